@@ -16,7 +16,7 @@ struct ArmQuantity
   const char* name;
   const char* unit;
   const char* meaning;
-  bool of_tool;  ///< the quantity has x, y and z; otherwise it has a number for each joint
+  bool of_tool;  ///< true: the quantity has x, y and z; false: it has one number for each joint
 
   constexpr std::size_t width(std::size_t joints) const { return of_tool ? 3 : joints; }
 };

@@ -15,16 +15,17 @@ namespace hjt
 {
 namespace
 {
-/// Weights of the last steps' values in a polynomial through them at the next step, by the polynomial's order.
+/// Weights of the last three steps' values in the polynomial that gives the value of the next step, by the polynomial's
+/// order.
 constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
   { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
 };
 
-/// Least inertia that each drive sees over many poses [kg.m^2].
+/// Least inertia that the arm shows each drive, over many random poses [kg.m^2].
 std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double>& spline_inertia)
 {
   constexpr int POSES = 500;
-  constexpr double MARGIN = 0.8;  // factor on the least inertia, for poses that are not sampled
+  constexpr double MARGIN = 0.8;  // factor on the least inertia, because other poses may have a smaller one
   const auto joints = static_cast<Eigen::Index>(spline_inertia.size());
   std::vector<JointMotion> pose(spline_inertia.size());
   std::vector<double> least(spline_inertia.size(), std::numeric_limits<double>::infinity());
@@ -34,7 +35,7 @@ std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double
   {
     for (JointMotion& joint : pose)
     {
-      // The standard library's distributions would differ from library to library.
+      // The distributions of the standard library give other numbers in each implementation.
       joint.position = TWO_PI * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max());
     }
     dynamics.massMatrix(pose, mass);
@@ -142,14 +143,14 @@ bool ArmTwin::reset(Stamp stamp) noexcept
   return good;
 }
 
-/// Computes M + D at a pose.
+/// Computes the mass matrix M + D at a pose.
 void ArmTwin::setMass(const std::vector<JointMotion>& pose) noexcept
 {
   dynamics_.massMatrix(pose, mass_);
   mass_.diagonal() += Eigen::Map<const Eigen::VectorXd>(spline_inertia_.data(), mass_.rows());
 }
 
-/// Computes M + D at the predicted pose, and the inverse.
+/// Computes the mass matrix M + D at the predicted pose, and its inverse W.
 void ArmTwin::takeMass() noexcept
 {
   setMass(next_);
@@ -187,7 +188,7 @@ bool ArmTwin::step(Stamp until) noexcept
   return true;
 }
 
-/// Gives each drive the arm's inertia and load at the end of the step.
+/// Gives each drive the inertia and the load that the arm has for it at the end of the step.
 void ArmTwin::couple() noexcept
 {
   const auto joints = static_cast<Eigen::Index>(drives_.size());

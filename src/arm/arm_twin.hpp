@@ -13,11 +13,11 @@
 
 namespace hjt
 {
-/// How the drives of an arm are coupled. Cost and error of each: docs/arm_twin.md.
+/// Settings of the coupling between the drives of an arm. docs/arm_twin.md gives cost and error of each setting.
 struct ArmCoupling
 {
   double mass_rate{ 1000.0 };  ///< rate at which the mass matrix is computed, at most solver.rate [Hz]
-  int order{ 1 };  ///< order of the extrapolation of the other drives' torques, 0 to 2; 0 takes those of the last step
+  int order{ 1 };  ///< order of the polynomial that extrapolates the other drives' torques, 0 to 2; 0: the last torques
 };
 
 /// The drives of an arm, each a Twin, coupled by the rigid-body dynamics of its links:
@@ -42,9 +42,9 @@ struct ArmCoupling
 class ArmTwin
 {
 public:
-  /// `drives`: one for each joint of `arm`, all of one solver.rate and with no gravity of their own;
-  /// their output.load_inertia is replaced by the least that the arm shows them. `start`: angles of the
-  /// joints, where the arm stands, its brakes engaged [rad].
+  /// `drives`: parameters of the drive of each joint, with equal solver.rate and without gravity. The least inertia
+  /// that the arm shows a drive replaces its output.load_inertia. `start`: angle of each joint at which the arm stands
+  /// with engaged brakes [rad].
   /// @throws ParameterError naming the joint and the key.
   ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
           const SurfaceSource& surface_source = {}, const ArmCoupling& coupling = {});
@@ -53,7 +53,7 @@ public:
   Twin& drive(std::size_t joint) noexcept { return drives_[joint]; }
   const Twin& drive(std::size_t joint) const noexcept { return drives_[joint]; }
 
-  /// Sets the arm back to the start at `stamp`. Returns false if the stamp is beyond +-MAX_STAMP.
+  /// Sets the arm back to its start angles at the time `stamp`. Returns false if `stamp` is beyond +-MAX_STAMP.
   bool reset(Stamp stamp) noexcept;
 
   /// Makes one solver step of all drives. Returns false, and does nothing, if the next instant is after `until`.
@@ -64,7 +64,7 @@ public:
 
   /// Angles, speeds and accelerations of the links at the present instant.
   const std::vector<JointMotion>& motion() const noexcept { return motion_; }
-  /// Angle of the joint where its drive's output angle is zero [rad].
+  /// Angle of the joint at which the output angle of its drive is zero [rad].
   double startAngle(std::size_t joint) const noexcept { return zero_[joint]; }
   ToolPose toolPose() noexcept { return dynamics_.toolPose(motion_); }
 
@@ -88,10 +88,10 @@ private:
 
   ArmDynamics dynamics_;
   std::vector<double> pose_at_start_;  // joint angles at the start [rad]
-  std::vector<double> zero_;           // joint angles less output angles of the drives [rad]
+  std::vector<double> zero_;           // joint angle - output angle of each drive [rad]
   std::vector<Twin> drives_;
   std::vector<double> spline_inertia_;  // inertia of each circular spline [kg.m^2]
-  std::int64_t mass_steps_;             // steps from one mass matrix to the next
+  std::int64_t mass_steps_;             // number of steps from one mass matrix to the next [-]
   std::int64_t steps_{};
   std::vector<JointMotion> motion_;
   std::vector<JointMotion> next_;  // predicted motion at the end of the step
@@ -99,9 +99,9 @@ private:
   Eigen::MatrixXd mass_;           // M + D [kg.m^2]
   Eigen::LLT<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd inverse_;                      // W [1/(kg.m^2)]
-  std::array<double, 3> weights_;                // weights of the last steps' torques in the extrapolation
-  std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last three steps, the last first [N.m]
-  Eigen::VectorXd excess_;                       // tau - h, extrapolated [N.m]
+  std::array<double, 3> weights_;                // weights of the last steps' torques in the extrapolation [-]
+  std::array<Eigen::VectorXd, 3> link_torques_;  // tau of the last three steps, the newest first [N.m]
+  Eigen::VectorXd excess_;                       // tau - h at the end of the step, extrapolated [N.m]
   double energy_at_start_{};
 };
 }  // namespace hjt

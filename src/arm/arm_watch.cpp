@@ -65,7 +65,7 @@ bool LoadWatch::isDue() const
                        fit_->moved() >= next_look_;
 }
 
-/// Begins a look at the rows so far. If no thread can be started, the next look is made later.
+/// Starts an evaluation of the rows so far in a thread. If no thread can start, a later call makes the evaluation.
 void LoadWatch::begin(std::vector<bool> measured)
 {
   looked_at_ = last_time_;
@@ -97,16 +97,15 @@ bool LoadWatch::look(const JudgedJoints& joints)
   return counts && take(found, joints);
 }
 
-/// Takes what a look has found. While another load is tried `found` is empty.
+/// Takes the result of an evaluation. `found` is empty if another load is on trial.
 bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
   frictions_ = was_trying ? frictions_ : found.frictions;
   const bool alternates = found.changes.size() > 2 && found.changes.back().time > looked_at_ - LoadFit::FIRST_LOOK;
   misfit_ = alternates ? Misfit{ Reason::LOAD_WRONG,
-                                 "the payload changes from leg to leg, as in picking and placing: "
-                                 "record the motion and compare it, which judges each leg with its "
-                                 "payload" } :
+                                 "the payload changes from leg to leg, as in picking and placing. "
+                                 "`joint_twin compare` judges each leg of a recording with its payload" } :
                          found.misfit();
   const bool is_other = !alternates && law_.take(found.last(), joints);
   has_looked_ = true;
@@ -125,8 +124,8 @@ bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 
 bool ArmWatch::moves(const std::vector<MotionRow>& rows)
 {
-  constexpr double MOVED = 0.01;  // least motion, beyond play and noise [rad]
-  constexpr double STILL = 1.0;   // time after a motion that still counts as motion [s]
+  constexpr double MOVED = 0.01;  // least change of an angle that is a motion, above play and noise [rad]
+  constexpr double STILL = 1.0;   // time after the last change of an angle that still counts as motion [s]
   moved_from_.resize(rows.size(), HUGE_VAL);
   for (std::size_t i = 0; i < rows.size(); ++i)
   {
@@ -206,15 +205,14 @@ bool ArmWatch::look()
   }
   if (is_stopped_)
   {
-    answer_ = {};  // the result is of rows before the last reset
+    answer_ = {};  // drops the result, which is that of rows before the last reset
     return false;
   }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
   {
-    moved_ = std::max(moved_,
-                      0.0);  // rank again soon: a wrong result, for example while a hand leads the arm, does not last
+    moved_ = std::max(moved_, 0.0);  // rank again soon: a hand that leads the arm may have caused a wrong result
   }
   return true;
 }

@@ -27,30 +27,30 @@ namespace hjt
 class LoadWatch
 {
 public:
-  /// `joints`: parameters of each joint; `drives`: drives of the joints, with the friction that is expected of them.
-  /// @throws ParameterError as MotionDriven.
+  /// `joints`: parameters of each joint. `drives`: drive of each joint, with its expected friction.
+  /// @throws ParameterError for the reasons that MotionDriven names.
   LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints, std::vector<LoadFit::Drive> drives);
 
   void add(const ArmSample& sample);
-  /// Starts again with the load that counts, because other rows follow.
+  /// Forgets the rows, because those of another motion follow. The present load stays.
   void reset();
 
-  /// Whether it is time to begin a look, or to take what a look has found.
+  /// Whether look() has work: an evaluation is due, or the result of one is ready.
   bool isDue() const;
   bool isLooking() const { return found_.valid(); }
-  /// Begins a look or takes its result. To be called when isDue(), with the joints as they are judged with the load
-  /// that counts. Returns true if another load counts from now on.
+  /// Starts an evaluation or takes its result. Call this function if isDue() is true. `joints`: results with the
+  /// present load. Returns true if another load counts from now on.
   bool look(const JudgedJoints& joints);
 
   const AssumedLoad& assumed() const { return law_.counts(); }
   bool isTrying() const { return law_.isTrying(); }
-  /// Why no joint can be judged: the payload changes again and again, or the gain of all joints is another one.
+  /// Why no joint can be judged: the payload changes again and again, or the gain of all joints is not as configured.
   const Misfit& misfit() const { return misfit_; }
-  /// Friction of each joint by the last look; empty before the first look.
+  /// Friction of each joint by the last evaluation; empty before the first evaluation.
   const std::vector<FittedFriction>& frictions() const { return frictions_; }
-  /// Whether it has looked and tries no load.
+  /// Whether an evaluation has ended and no load is on trial.
   bool isSettled() const { return has_looked_ && !isTrying(); }
-  /// The arm with the payload and the mounting that count.
+  /// The arm with the payload and the mounting with which the joints are judged.
   const ArmDescription& arm() const { return arm_; }
 
 private:
@@ -72,23 +72,22 @@ private:
   bool has_looked_{};
   Misfit misfit_;
   std::vector<FittedFriction> frictions_;
-  bool is_new_{ true };           // the next row comes after a gap
-  double looked_at_{};            // time of the last row of the last look [s]
-  bool is_of_others_{};           // the running look is at rows before the last reset
-  std::future<FoundLoad> found_;  // the last member: it is waited for before the others are destroyed
+  bool is_new_{ true };           // true: the next row is the first one after a gap
+  double looked_at_{};            // time of the last row of the last evaluation [s]
+  bool is_of_others_{};           // true: the running evaluation is that of rows before the last reset
+  std::future<FoundLoad> found_;  // last member: its destructor waits for the thread, which uses other members
 };
 
-/// Finds whether the rows are of another arm than the given one, by the law of `rankArms`, while the rows come. The
-/// class ranks the arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the
-/// rows may be of another arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with
-/// motion.
+/// Finds out, while rows arrive, whether they belong to another arm than the given one (rankArms). The class ranks the
+/// arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the rows may be of another
+/// arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with motion.
 class ArmWatch
 {
 public:
   /// Makes the arms to rank, `own` among them. The thread that ranks the arms calls this function.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
-  /// `unit_is_given`: efforts are of the configured unit.
+  /// `own`: name of the given arm. `unit_is_given`: whether the efforts certainly have the configured unit.
   ArmWatch(MakeCandidates make, std::string own, bool unit_is_given = false)
     : make_(std::move(make)), own_(std::move(own)), unit_is_given_(unit_is_given)
   {
@@ -99,7 +98,7 @@ public:
 
   /// Adds rows of all joints at one time. The member `current` is the received effort in its own unit.
   void add(const std::vector<MotionRow>& rows);
-  /// Forgets the rows so far and all results of them, because rows of another motion follow.
+  /// Forgets all rows and their results, because rows of another motion follow.
   void reset();
 
   /// Whether the search for a likelier arm has ended since the last call. @throws any exception of MakeCandidates.
@@ -107,7 +106,7 @@ public:
 
   /// The arm that is clearly likelier than the given one; empty if none is known.
   const std::string& other() const { return other_; }
-  /// Whether there is an answer.
+  /// Whether a ranking of the present rows has ended.
   bool isSettled() const { return is_settled_; }
 
 private:
@@ -125,9 +124,9 @@ private:
   std::vector<double> moved_from_;  // angles where the joints last stood [rad]
   double last_moved_{ -HUGE_VAL };  // time of the last row with motion [s]
   double last_time_{ -HUGE_VAL };   // time of the last row that was kept [s]
-  double moved_{};                  // motion since the last start [s]
+  double moved_{};                  // time of motion since the last start [s]
   double next_look_{ LoadFit::FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };  // the result of the running ranking is ignored
-  std::future<std::string> answer_;        // the last member: it is waited for before the others are destroyed
+  std::atomic<bool> is_stopped_{ false };  // true: the result of the running ranking does not count
+  std::future<std::string> answer_;        // last member: its destructor waits for the thread, which uses other members
 };
 }  // namespace hjt

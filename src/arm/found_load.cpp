@@ -14,7 +14,7 @@ namespace hjt
 {
 namespace
 {
-/// The load with the configured one of the arm's file; none if both are the same.
+/// The found load, compared with the configured one of the arm's file; none if both agree.
 template <class Found>
 std::optional<Found> named(Found found, const std::optional<Found>& counts)
 {
@@ -22,7 +22,7 @@ std::optional<Found> named(Found found, const std::optional<Found>& counts)
   return found.differs() ? std::make_optional(found) : std::nullopt;
 }
 
-/// Whether all misfits of the joints can come from a wrong load, and would be gone with the right one.
+/// Whether all misfits of the joints can come from a wrong load, so that the right load may end them.
 bool mayBeOther(const JudgedJoints& joints)
 {
   for (std::size_t i = 0; i < joints.misfits.size(); ++i)
@@ -38,7 +38,7 @@ bool mayBeOther(const JudgedJoints& joints)
   return true;
 }
 
-/// Whether every joint with a measured current fits.
+/// Whether no joint with a measured current has a misfit.
 bool explains(const JudgedJoints& joints)
 {
   for (std::size_t i = 0; i < joints.misfits.size(); ++i)
@@ -85,14 +85,14 @@ std::string IdentifiedPayload::text() const
   const Payload found = payload();
   if (!isCarried())
   {
-    return "the currents show no payload, " + fixedText(std::max(mass, 0.0), 1) + " +- " +
-           fixedText(mass_half_width, 1) + " kg (95 %) at the flange, but " + roundedText(configured.mass, 3) +
-           " kg is configured (set payload in the arm's file)";
+    return "the currents show no payload at the flange (" + fixedText(std::max(mass, 0.0), 1) + " +- " +
+           fixedText(mass_half_width, 1) + " kg, 95 %), but " + roundedText(configured.mass, 3) +
+           " kg is configured. Set payload in the arm's file";
   }
   return "the currents show a payload of " + fixedText(found.mass, 1) + " +- " + fixedText(mass_half_width, 1) +
-         " kg (95 %) at the flange, not the configured " + roundedText(configured.mass, 3) +
-         " kg (set payload in the arm's file). The payload's centre is at " + fixedText(found.centre[0], 2) + ", " +
-         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) + " m";
+         " kg (95 %) at the flange with its centre at " + fixedText(found.centre[0], 2) + ", " +
+         fixedText(found.centre[1], 2) + ", " + fixedText(found.centre[2], 2) + " m, but " +
+         roundedText(configured.mass, 3) + " kg is configured. Set payload in the arm's file";
 }
 
 double IdentifiedMounting::tilt() const
@@ -112,9 +112,9 @@ double IdentifiedMounting::tilt() const
 
 bool IdentifiedMounting::differs() const
 {
-  constexpr double LEAST = 4.0 * DEGREE;  // least tilt; errors of the links' masses cause a smaller one [rad]
-  constexpr double KNOWN = 3.0;           // least tilt in half widths; a hand on the arm causes a smaller one [-]
-  constexpr double SIZE = 1.35;           // largest factor of the size that a payload or errors of gains cause [-]
+  constexpr double LEAST = 4.0 * DEGREE;  // least tilt that counts; errors of the links' masses cause less [rad]
+  constexpr double KNOWN = 3.0;           // least tilt that counts, in half widths; a hand on the arm causes less [-]
+  constexpr double SIZE = 1.35;           // largest factor on gravity that a payload or errors of gains cause [-]
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
@@ -136,19 +136,19 @@ bool FoundDrag::exists() const
 std::string FoundDrag::text() const
 {
   return "the currents show a force of " + fixedText(force, 0) + " +- " + fixedText(half_width, 0) +
-         " N (95 %) on the tool against its motion: a cable, a hose, or a tool that rubs";
+         " N (95 %) on the tool against its motion, for example by a cable, a hose, or a tool that rubs";
 }
 
 Misfit FoundLoad::misfit() const
 {
-  constexpr double NOTEWORTHY = 0.2;  // least change of the gain; gains of one type differ by less
+  constexpr double NOTEWORTHY = 0.2;  // least deviation of the gain that counts; gains of one type deviate by less [-]
   if (std::abs(gain) - gain_half_width < NOTEWORTHY)
   {
     return {};
   }
   return { Reason::EFFORT_UNIT, "the currents of all joints are " + fixedText(1.0 + gain, 2) + " +- " +
                                     fixedText(gain_half_width, 2) +
-                                    " times those that load and friction need (95 %). The gain "
+                                    " times the currents that load and friction need (95 %). The gain "
                                     "(telemetry.torque_per_current) or the unit is not as configured" };
 }
 
@@ -245,11 +245,11 @@ bool LoadLaw::take(const FoundLoad& found, const JudgedJoints& joints)
   return true;
 }
 
-/// The load to try in place of the present one; none if the present one stays.
+/// The load to try in place of the present load; none if the present load stays.
 std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJoints& joints) const
 {
   const bool is_mounted = found.mounting.differs();
-  // A mass below zero is no payload. A mass that is less than the one found before means that the payload was put down.
+  // A mass below zero is no payload. A smaller mass than the found one before means that somebody put the payload down.
   const bool is_put_down = counts_.payload && counts_.payload->isCarried();
   const bool changes = !found.changes.empty() || !std::isinf(found.since);
   const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));

@@ -14,16 +14,16 @@ namespace hjt
 {
 namespace
 {
-// Logarithm of how much rarer another mounting, a changing payload or a drag is. Recordings of a UR5 and a UR10e with a
-// constant payload show up to 8 for a changing one.
+// How much rarer another mounting, a changing payload or a drag is, as a logarithm [-]. Recordings of a UR5 and a UR10e
+// with a constant payload show up to 8 for a changing payload.
 constexpr double OTHER_CAUSE = 10.0;
-constexpr double TOLD = 1.0;    // largest half width by the rows alone of a friction that is known [-]
-constexpr double FLOOR = 0.02;  // share of the currents that the twin of every real arm leaves [-]
+constexpr double TOLD = 1.0;    // largest half width, by the rows alone, of a known friction [-]
+constexpr double FLOOR = 0.02;  // share of the currents that no twin of a real arm explains [-]
 
-/// Cost of the share of the currents that is left.
+/// Cost of a fit that leaves a share of the currents unexplained.
 double misfitCost(double left)
 {
-  constexpr double COUNTED = 60.0;  // number of rows that count: errors of a model are not independent from row to row
+  constexpr double COUNTED = 60.0;  // number of independent rows; errors of a model persist from row to row
   return COUNTED * std::log(std::hypot(left, FLOOR));
 }
 FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
@@ -31,10 +31,10 @@ FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
   return { estimate.drag.value, estimate.drag.half_width };
 }
 
-/// Legs in which something pushes the tip; empty if there are none. A push is known by a force across gravity that is
-/// far larger than in most legs. If one leg has a push, a force up or down in another leg is a push too, and no
-/// payload. In simulated days without a push legs show up to 12 N, most of them 1 N; legs with a push of 60 N show 16
-/// to 79 N.
+/// Legs in which something pushes the tip; empty if there are none. A force across gravity that is far larger than in
+/// most legs shows a push, because no payload has such a force. If one leg has a push, a large force along gravity in
+/// another leg is a push too. In simulated days without a push legs show up to 12 N, most of them 1 N. Legs with a push
+/// of 60 N show 16 to 79 N.
 std::vector<bool> pushedLegs(const std::vector<ArmEstimator::Push>& pushes)
 {
   constexpr double LEAST = 10.0;  // least force that counts as a push [N]
@@ -84,10 +84,10 @@ LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
   }
 }
 
-/// Begins a new leg where all joints stand, and after 5 s.
+/// Begins a new leg when all joints stand still, and after 5 s at the latest.
 void LoadFit::cutLegs(double time, double speed)
 {
-  constexpr double STOP = 0.2;  // least time at rest that ends a leg [s]
+  constexpr double STOP = 0.2;  // time at rest that ends a leg [s]
   constexpr double SHORTEST = 1.0;
   constexpr double LONGEST = 5.0;
   if (legs_.empty())
@@ -130,7 +130,8 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
-/// The golden ratio spreads the rows. Every nth row would always be the same part of a motion that repeats.
+/// Multiples of the golden ratio spread the drawn rows. Every nth row would always show the same part of a repeated
+/// motion.
 bool LoadFit::isDrawn(std::size_t number, double share)
 {
   constexpr double GOLDEN = 0.6180339887498949;
@@ -141,7 +142,7 @@ bool LoadFit::isDrawn(std::size_t number, double share)
 /// Removes half of the rows if there are more than enough.
 void LoadFit::thin()
 {
-  constexpr std::size_t ENOUGH = 6000;  // ten minutes of each joint
+  constexpr std::size_t ENOUGH = 6000;  // number of rows of a joint in ten minutes
   if (std::all_of(rows_.begin(), rows_.end(), [&](const auto& joint) { return joint.size() <= ENOUGH; }))
   {
     return;
@@ -163,11 +164,11 @@ void LoadFit::thin()
   share_ *= 0.5;
 }
 
-/// Adds a sample to the open row of a joint. `torques` are those of unit loads (UnitLoads) [N.m].
+/// Adds a sample to the open row of a joint. `torques`: torques of unit loads at this joint (UnitLoads).
 void LoadFit::addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
                     const UnitLoads::Torques& torques)
 {
-  constexpr double COLDER = 10.0;     // difference of the temperature for ArmEstimator::Row::cold [K]
+  constexpr double COLDER = 10.0;     // difference of temperature that ArmEstimator::Row::cold stands for [K]
   constexpr double LEAST_LOAD = 0.1;  // [N.m]
   Joint& joint = joints_[number];
   const double gain = joint.drive.gain;
@@ -184,7 +185,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
   joint.weights += torques[0] * torques[0];
   if (!isDrawn(blocks_[number], share_))
   {
-    return;  // the block will not be kept
+    return;  // close() will drop this block
   }
   const double of_mass = std::max(std::abs(torques[0]), LEAST_LOAD);
   const double most = std::abs(sample.load) + of_mass;
@@ -239,7 +240,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const TwinOf& twin)
   thin();
 }
 
-/// Rows of the joints that count: at most `most` of each joint, without rows of pushed legs.
+/// Rows of the joints that count: at most `most` rows of each joint, and no rows of pushed legs.
 ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most) const
 {
   ArmEstimator::Rows rows(rows_.size());
@@ -257,7 +258,7 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   return rows;
 }
 
-/// Mass at the tip that loads the joint which weighs it best as much as 2 % of the links' masses do [kg].
+/// Mass at the tip that loads the joint most loaded by the tip as much as 2 % of the links' masses do [kg].
 double LoadFit::ofLinks(const std::vector<bool>& counts) const
 {
   constexpr double LINKS_SHARE = 0.02;
@@ -277,7 +278,7 @@ double LoadFit::ofLinks(const std::vector<bool>& counts) const
 IdentifiedPayload LoadFit::payloadOf(const ArmEstimator::Carried& beside, const ArmEstimator::Carried& half_width,
                                      double of_links) const
 {
-  constexpr double UNLOADED = 0.05;  // share of the links' mass: sound UR5 without a payload show 0 to 0.8 kg
+  constexpr double UNLOADED = 0.05;  // share of the links' mass: sound UR5 without a payload show up to 0.8 kg
   IdentifiedPayload found;
   found.configured = payload_;
   found.mass = payload_.mass + beside[0];
@@ -296,18 +297,18 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
 {
   const Eigen::Vector3d total = gravity_ + estimate.gravity;
   const Eigen::Vector3d direction = total / std::max(total.norm(), 1e-6);
-  // The part of the half widths across the direction.
+  // Only the part of the half widths across the direction of gravity changes this direction.
   const Eigen::Array3d across = (1.0 - direction.array().square()).max(0.0);
   IdentifiedMounting found;
   Eigen::Map<Eigen::Vector3d>(found.configured.data()) = gravity_;
   Eigen::Map<Eigen::Vector3d>(found.gravity.data()) = gravity_.norm() * direction;
   found.half_width =
       std::sqrt((estimate.gravity_half_width.array().square() * across).sum()) / std::max(total.norm(), 1e-6);
-  found.size = total.norm() / std::max(gravity_.norm(), 1e-6);  // without configured gravity there is no direction
+  found.size = total.norm() / std::max(gravity_.norm(), 1e-6);  // without configured gravity the size has no meaning
   return found;
 }
 
-/// Standard deviations of the joints' own friction, as ArmEstimator takes them.
+/// Standard deviation of each joint's friction when it is sound, as ArmEstimator expects it.
 std::vector<double> LoadFit::repeats() const
 {
   std::vector<double> repeats;
@@ -323,7 +324,7 @@ std::vector<double> LoadFit::repeats() const
   return repeats;
 }
 
-/// The likeliest hypotheses by the rows of legs in which nothing pushes the arm.
+/// The likeliest hypotheses by the rows of all legs in which nothing pushes the arm.
 std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& counts)
 {
   for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -336,11 +337,11 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
   return pushed_.empty() ? all : likeliest(counts);
 }
 
-/// Hypotheses that may explain the currents: the likeliest first, then all that are not clearly less likely.
+/// Hypotheses that may explain the currents: first the likeliest one, then all that are not clearly less likely.
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
-  constexpr double LEAST_JUMP = 0.1;       // least change of a mass; rising friction looks like less [kg]
-  constexpr std::size_t MOST_ROWS = 1500;  // largest number of rows of a joint
+  constexpr double LEAST_JUMP = 0.1;       // least change of the mass; rising friction has the effect of less [kg]
+  constexpr std::size_t MOST_ROWS = 1500;  // largest number of rows of each joint
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   std::vector<Hypothesis> all;
   for (const ArmEstimator::Freedom& may :
@@ -369,8 +370,9 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   return hypotheses(counts).front().found;
 }
 
-/// Friction of each joint by all hypotheses. Of a joint's own part and its whole friction the one counts that is nearer
-/// to the expected one. With another mounting nothing is known, because the twins' friction is that of a wrong load.
+/// Friction of each joint by all hypotheses. The factor is that of the joint alone or that with common factors,
+/// whichever is nearer to 1. With another mounting no friction is known, because the twins' friction is that of a wrong
+/// load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());
@@ -437,7 +439,8 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   {
     return found;
   }
-  // The difference of one payload from the configured one is an error of the links, which the other payload has too.
+  // A difference of one payload from the configured one is an error of the links' masses, which the other payload has
+  // too.
   found.otherwise = found.payload;
   const bool is_known = !found.otherwise.differs();
   const ArmEstimator::Carried other =
@@ -465,10 +468,10 @@ double LoadFit::leastCost()
 
 LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
-  constexpr std::size_t MOST_ROWS = 400;  // largest number of rows of a joint
-  constexpr double OTHER_SIZE = 20.0;     // logarithm of how much rarer another size of all currents is
-  constexpr double CLEAR = 0.3;           // least logarithm of another size; payloads and gains make less
-  constexpr double NO_MASS = 0.5;         // standard deviation of masses below zero, by errors of the links [kg]
+  constexpr std::size_t MOST_ROWS = 400;  // largest number of rows of each joint
+  constexpr double OTHER_SIZE = 20.0;     // how much rarer another factor of all currents is, as a logarithm [-]
+  constexpr double CLEAR = 0.3;           // least logarithm of such a factor; payloads and gains cause smaller ones [-]
+  constexpr double NO_MASS = 0.5;  // standard deviation of masses below zero, by errors of the links' masses [kg]
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;
   const auto likelier = [&](bool is_mounted)
@@ -480,7 +483,7 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
   {
     if (is_mounted && best.cost <= leastCost() + OTHER_CAUSE)
     {
-      break;  // no mounting could be likelier
+      break;  // no mounting can be likelier
     }
     const ArmEstimator::Estimate found = likelier(is_mounted);
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);

@@ -17,30 +17,30 @@
 
 namespace hjt
 {
-/// Finds payload, mounting and drag of an arm from the currents of all joints while they move (ArmEstimator). A row of
-/// the fit is the mean over 0.1 s of one joint that moves one way with all its friction. Of long recordings a number of
-/// rows is kept that suffices, evenly over the time. A leg lasts from one standstill to the next, 5 s at most; the
-/// payload may change between legs. The interval of a mass contains that of the fit and 2 % of the links' own masses.
+/// Finds payload, mounting and drag of an arm from the currents of its moving joints (ArmEstimator). A row of the fit
+/// is the mean over 0.1 s of the motion of one joint in one direction with fully built-up friction. The class keeps at
+/// most enough rows of a long recording, evenly over its time. The payload may change between legs. The interval of a
+/// mass adds 2 % of the links' own masses to the interval of the fit.
 class LoadFit
 {
 public:
-  static constexpr double PERIOD = 0.02;      ///< least time between rows that count [s]
-  static constexpr double FIRST_LOOK = 30.0;  ///< motion after which live rows are looked at first [s]
-  static constexpr double LAST_LOOK = 480.0;  ///< motion after which the fit of live rows begins again [s]
+  static constexpr double PERIOD = 0.02;      ///< least time between two rows that count [s]
+  static constexpr double FIRST_LOOK = 30.0;  ///< time of motion before the first fit of live rows [s]
+  static constexpr double LAST_LOOK = 480.0;  ///< time of motion after which the fit of live rows begins again [s]
 
   /// What the fit knows of a joint's drive.
   struct Drive
   {
     explicit Drive(const Parameters& parameters);
-    /// Expects the friction that this joint had when it was sound, if `known`: the points `friction` by speed. Without
-    /// points the twin's friction is expected.
+    /// If `known`, the expected friction is that of this joint when it was sound: the points `friction` over the speed.
+    /// Without points the expected friction is that of the twin.
     void setOwn(bool known, const std::vector<FrictionPoint>& friction);
 
-    double gain;             ///< torque per current [N.m/A]
-    double rotor;            ///< inertia at the joint [kg.m^2]
-    double temperature;      ///< temperature of samples that have none [degC]
+    double gain;             ///< torque at the joint per current of the motor [N.m/A]
+    double rotor;            ///< inertia of the rotor, seen from the joint [kg.m^2]
+    double temperature;      ///< temperature for samples without a temperature [degC]
     bool is_own{};           ///< whether the friction of this joint when it was sound is known
-    double friction{ 1.0 };  ///< known friction over the twin's [-]
+    double friction{ 1.0 };  ///< friction of the joint when it was sound, over the twin's friction [-]
   };
 
   LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives);
@@ -49,12 +49,12 @@ public:
   {
   }
 
-  /// Gives the twin of a joint, by the joint's number.
+  /// A function that returns the twin of a joint by the joint's number.
   using TwinOf = std::function<const MotionDriven&(std::size_t joint)>;
-  /// Takes samples of one time. The twins must have made the step to that time.
+  /// Adds the samples of all joints at one time. The twins must have made their step to this time before.
   void add(const std::vector<MotionSample>& samples, const TwinOf& twin);
 
-  /// The load by the joints that count: those whose current is measured.
+  /// The load of the arm by the joints that count, those with a measured current.
   FoundLoad solve(const std::vector<bool>& counts);
   /// The likeliest estimate of all causes, by the joints that count.
   ArmEstimator::Estimate estimate(const std::vector<bool>& counts);
@@ -62,21 +62,21 @@ public:
   /// How well the best causes explain the currents.
   struct Fit
   {
-    double size{ 1.0 };  ///< factor of all currents, 1 if it is one that gains of a type have [-]
-    double left{ 1.0 };  ///< share of the currents that is not explained, rms [-]
+    double size{ 1.0 };  ///< common factor of all currents; 1 if gains of one type can have it [-]
+    double left{ 1.0 };  ///< share of the currents that the causes do not explain, rms [-]
     double cost{};       ///< negative logarithm of a likelihood that allows for errors of the models [-]
   };
   /// How well the arm explains the currents of the joints that count, with the best payload and the best mounting.
   Fit explained(const std::vector<bool>& counts);
-  /// The least cost that any arm can have: that of an arm that explains all currents without a rare cause.
+  /// The least cost that any arm can have: its causes are not rare and explain all currents.
   static double leastCost();
-  /// Whether a row is drawn when a `share` of the numbered rows is: the same share of every part of the rows, of a
-  /// motion that repeats too. Rows of a smaller share are also among those of a larger one.
+  /// Whether row `number` belongs to the `share` of all rows that is drawn. The draw is even over all rows, also of a
+  /// motion that repeats. The rows of a smaller share also belong to any larger share.
   static bool isDrawn(std::size_t number, double share);
-  double moved() const { return moved_; }  ///< time in which a joint moved [s]
+  double moved() const { return moved_; }  ///< time in which at least one joint moved [s]
 
 private:
-  static constexpr double BLOCK = 0.1;  ///< time over which a row of the fit is averaged [s]
+  static constexpr double BLOCK = 0.1;  ///< time over which the fit averages a row [s]
 
   struct Open
   {
@@ -88,17 +88,17 @@ private:
   struct Joint
   {
     Drive drive;
-    double loads{};    // sum of the squares of its loads [(N.m)^2]
-    double weights{};  // sum of the squares of the loads of 1 kg at the tip [(N.m)^2]
+    double loads{};    // sum of the squares of the joint's loads [(N.m)^2]
+    double weights{};  // sum of the squares of the loads by 1 kg at the tip [(N.m)^2]
     Open open{};
   };
 
-  /// Causes that may explain the currents.
+  /// A combination of causes that may explain the currents.
   struct Hypothesis
   {
     ArmEstimator::Estimate found;
     ArmEstimator::Freedom may;
-    double cost{};  ///< cost of the estimate and of its rare causes [-]
+    double cost{};  ///< cost of the estimate, plus the cost of its rare causes [-]
   };
 
   std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
@@ -124,12 +124,12 @@ private:
   std::vector<JointMotion> motion_;
   std::vector<Joint> joints_;
   ArmEstimator::Rows rows_;
-  std::vector<double> legs_;  // begin of each leg [s]
-  std::vector<bool> pushed_;  // legs that do not count, because something pushes the arm; empty: none
+  std::vector<double> legs_;  // time at which each leg begins [s]
+  std::vector<bool> pushed_;  // true: this leg does not count, because something pushes the arm; empty: no such leg
   double still_{};            // time for which all joints have stood still [s]
-  double moved_{};            // time in which a joint moved [s]
+  double moved_{};            // time in which at least one joint moved [s]
   double last_time_{};
-  double share_{ 1.0 };  // share of the blocks that are kept
+  double share_{ 1.0 };  // share of the blocks that the fit keeps [-]
   std::vector<std::size_t> blocks_;
 };
 }  // namespace hjt

@@ -31,7 +31,7 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
   return gains;
 }
 
-/// The drives with onsets of faults that count from the begin of the motion.
+/// The drives, with onsets of faults that count from the beginning of the motion.
 std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
   constexpr double LATEST_ONSET = 1e9;  // largest onset that a drive accepts [s]
@@ -93,7 +93,7 @@ bool MovingArm::step(Stamp until) noexcept
   return true;
 }
 
-/// At an instant of the control, commands what acts from there on.
+/// If the controller acts at the present instant, commands the torques from then on.
 void MovingArm::control() noexcept
 {
   if (!controller_.isDue(twin_))
@@ -116,13 +116,13 @@ void MovingArm::control() noexcept
   }
 }
 
-/// Makes a protective stop if a joint is not where the controller wants it, or too fast.
+/// Makes a protective stop if a joint is too far from its set point or too fast.
 void MovingArm::watch() noexcept
 {
   for (std::size_t i = 0; i < twin_.joints() && !stop_; ++i)
   {
     const JointMotion& joint = twin_.motion()[i];
-    // The comparisons are written so that NaN stops the arm.
+    // The negated comparisons are true for NaN, so NaN stops the arm.
     if (!(std::abs(joint.position - set_point_[i].position) <= STOP_DEVIATION))
     {
       stop_ = { twin_.stamp(), i, "off its set point" };
@@ -139,7 +139,7 @@ void MovingArm::watch() noexcept
     twin_.drive(i).commandBrake(now, true);
     if (release > now)
     {
-      twin_.drive(i).commandBrake(release, true);  // engages the brake again at the release that is queued
+      twin_.drive(i).commandBrake(release, true);  // engages the brake again after the release, which is queued already
     }
   }
 }
@@ -147,7 +147,7 @@ void MovingArm::watch() noexcept
 bool MovingArm::unlock() noexcept
 {
   const std::vector<JointMotion>& joints = twin_.motion();
-  // The comparison is written so that NaN counts as motion.
+  // The comparison is false for NaN, so NaN counts as motion.
   const bool is_still = std::all_of(joints.begin(), joints.end(),
                                     [](const JointMotion& joint) { return std::abs(joint.velocity) <= STILL; });
   if (!stop_ || !is_still)
@@ -173,7 +173,7 @@ void MovingArm::follow(ArmMotion& motion) noexcept
   std::swap(commanded_, motion);
   is_commanded_ = true;
   is_held_ = false;
-  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // not before the brakes are released
+  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // the motion waits for the release of the brakes
 }
 
 void MovingArm::setPayload(const Payload& payload) noexcept

@@ -14,25 +14,25 @@ namespace hjt
 struct JointReading
 {
   double position{};  ///< angle by the encoder at the output [rad]
-  double velocity{};  ///< speed by the encoder at the motor, over the ratio, that the current was computed from [rad/s]
+  double velocity{};  ///< speed by the motor's encoder over the ratio, from which `current` was computed [rad/s]
   double current{};   ///< current of the motor [A]
 };
 
-/// A motion that the arm's controller ended by itself.
+/// A stop of the arm by its controller.
 struct ProtectiveStop
 {
   Stamp stamp{};         ///< stamp at which the controller stopped the arm
   std::size_t joint{};   ///< number of the joint, from the base on
-  const char* reason{};  ///< reason in words
+  const char* reason{};  ///< reason in words, as in "off its set point"
 };
 
-/// A twin of an arm that follows set points under its controller. After a reset the arm stands in its brakes for half
-/// of the settling time, and the controller holds it for the other half. Then its motion begins. A motion that does not
-/// begin at rest gets a lead-in.
+/// A twin of an arm that follows set points under its controller. After a reset brakes hold the arm for half of the
+/// settling time, and the controller holds it for the other half. Then the motion begins. If the first set point is not
+/// at rest, the arm accelerates to it in a lead-in before.
 ///
-/// Where a joint is STOP_DEVIATION off its set point, or faster than STOP_SPEED times its limit, the controller makes a
-/// protective stop: the motors give no torque and the brakes engage until the arm is unlocked or reset. The two bounds
-/// are assumed, because the maker gives none.
+/// If a joint is STOP_DEVIATION away from its set point, or faster than STOP_SPEED times its limit, the controller
+/// makes a protective stop: the motors have no torque, and the brakes hold the arm until it is unlocked or reset. Both
+/// bounds are assumptions, because the maker gives none.
 ///
 /// After construction only a copy throws or allocates.
 class MovingArm
@@ -41,22 +41,23 @@ public:
   static constexpr double CONTROL_RATE = 2000.0;  ///< rate of the controller [Hz]
   static constexpr double SETTLING = 0.5;         ///< settling time if no other is given [s]
   static constexpr double STOP_DEVIATION = 0.1;   ///< deviation from the set point that stops the arm [rad]
-  static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit that stops the arm [-]
-  static constexpr double STILL = 0.1;            ///< largest speed of a joint at which the arm is unlocked [rad/s]
+  static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit from which on the arm stops [-]
+  static constexpr double STILL = 0.1;            ///< largest speed of a joint at which unlock() works [rad/s]
 
-  /// `drives`: as ArmTwin takes them. The onsets of their faults count from the begin of the motion, but faults with an
-  /// onset of 0 exist from the reset on. `settling` is 0 or more [s]. @throws ParameterError.
+  /// `drives`: as in the constructor of ArmTwin. The onsets of faults count from the beginning of the motion; faults
+  /// with an onset of 0 exist from the reset on. `settling`: 0 or more [s]. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
             const SurfaceSource& surface_source, double settling = SETTLING);
 
-  /// Sets the arm back to the start of the motion that was given at construction. Returns false as ArmTwin::reset.
+  /// Sets the arm back to the start of the motion given at construction. Returns false for the reasons of
+  /// ArmTwin::reset().
   bool reset(Stamp stamp) noexcept;
 
-  /// Makes a step as ArmTwin::step, with the commands of the controller.
+  /// Makes one step, as ArmTwin::step(), with the commands of the controller.
   bool step(Stamp until) noexcept;
 
-  /// Takes another motion, in exchange for the last one that was taken so. The motion begins now, from the present set
-  /// point, which replaces its first one.
+  /// Begins another motion now, from the present set point, which replaces the first set point of `motion`. `motion`
+  /// receives the motion of the last call in exchange.
   void follow(ArmMotion& motion) noexcept;
 
   /// Time until the end of the commanded motion; it is negative after the end [s].
@@ -65,19 +66,18 @@ public:
     return commanded_.end() - commanded_.begin() - toSeconds(twin_.stamp() - command_begin_);
   }
 
-  /// Goes on to a set point that is due at `time`, for a motion that comes point by point. The motion given at
-  /// construction must have two set points, of which the first is the start. `time` is a time of that motion, later
-  /// than the last one.
+  /// Adds a set point at `time` to a motion that comes point by point. The motion given at construction must have two
+  /// set points, the start first. `time` counts in that motion and is later than in the last call.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
-  /// Sets the payload at the tip, from the next step on. The controller knows the payload.
+  /// Sets the payload at the tip, from the next step on. The controller feeds its torque forward.
   void setPayload(const Payload& payload) noexcept;
 
-  /// Gives the present set point. `motion` has an entry for each joint.
+  /// Gives the present set point of each joint. `motion` has an entry for each joint.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
 
-  /// Ends a protective stop: the controller holds the arm where it stands until the next motion. Returns false, and the
-  /// arm stays stopped, if a joint still moves.
+  /// Ends a protective stop. The controller then holds the arm where it stands until the next motion. Returns false,
+  /// and the arm stays stopped, if a joint still moves.
   bool unlock() noexcept;
 
   /// The protective stop of the arm; none if it is not stopped.
@@ -95,8 +95,8 @@ private:
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
 
-  double settling_;    // settling time [s]
-  ArmMotion lead_in_;  // ends where the motion begins
+  double settling_;    // time from a reset to the lead-in [s]
+  ArmMotion lead_in_;  // motion from rest to the first set point; empty if the first set point is at rest
   ArmTwin twin_;
   ArmController controller_;
   ArmMotion motion_;
@@ -105,9 +105,9 @@ private:
   bool is_commanded_{};
   Stamp motion_begin_{};
   Stamp command_begin_{};
-  std::vector<JointMotion> set_point_;  // set point of the last control
-  std::vector<double> fastest_;         // speeds of the joints above which the arm is stopped [rad/s]
+  std::vector<JointMotion> set_point_;  // set point of each joint at the last control
+  std::vector<double> fastest_;         // speed of each joint above which the arm stops [rad/s]
   std::optional<ProtectiveStop> stop_;
-  bool is_held_{};  // the arm is held at the last set point, after a stop
+  bool is_held_{};  // true: after unlock() the controller holds the arm at the last set point
 };
 }  // namespace hjt

@@ -20,16 +20,17 @@ namespace hjt
 namespace
 {
 constexpr double FASTEST = 10.0;      // speed that no joint of an arm exceeds [rad/s]
-constexpr double FACTOR_OFF = 0.03;   // change of angle over velocity that errors of encoders' scales do not make
-constexpr double DEVIATIONS = 3.0;    // standard deviations of a significant difference
-constexpr double WIDE = 2.0;          // factor that a payload or another gain makes at most
-constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; beyond it another unit is likelier
+constexpr double FACTOR_OFF = 0.03;   // least deviation of a factor that counts; scales of encoders deviate by less [-]
+constexpr double DEVIATIONS = 3.0;    // least significant difference, in standard deviations [-]
+constexpr double WIDE = 2.0;          // largest factor that a payload or another gain causes [-]
+constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; a larger one shows another unit [-]
 constexpr double LAG_OFF = 0.05;      // least lag of the velocity that counts [s]
 constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays the same [s]
-constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty: simulated data may have none
+constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty, because simulated data may have none
 
-/// Text on a lag of currents behind their motion, as "0.2 s later". `longest` is the longest lag that is tried [s].
+/// Text on the lag of currents behind their motion, such as "0.2 s later". `longest`: longest lag that the fit tries
+/// [s].
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
@@ -41,11 +42,11 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// Whether the factor is larger than gains of one type and payloads make with which the joints can be judged.
+/// Whether the factor is larger than the factors by gains of one type and by payloads with which joints can be judged.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
-  constexpr double SURE = 2.0;  // standard deviations; joints that are not judged give no alarm
+  constexpr double SURE = 2.0;  // standard deviations; fewer would leave more joints without a verdict
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
          std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }
@@ -55,28 +56,29 @@ std::string rounded(double value)
   return roundedText(value, 3);
 }
 
-/// The contradiction of angle and velocity of one joint whose factor is not that of the stamps.
+/// Describes how angle and velocity of one joint contradict each other. `own`: factor of this joint. `of_stamps`:
+/// factor of most joints.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "velocity zero: taken from the angles", std::nullopt };
+    return { "velocity_zero", "the recorded velocity is zero; the angles give the velocity", std::nullopt };
   }
   if (own.value < -STANDS)
   {
-    return { "velocity_sign", "angle and velocity of opposite sign", Reason::VELOCITY_SIGN };
+    return { "velocity_sign", "angle and velocity have opposite signs", Reason::VELOCITY_SIGN };
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "velocity in deg/s: taken from angles", std::nullopt };
+    return { "velocity_unit", "the recorded velocity is in deg/s; the angles give the velocity", std::nullopt };
   }
   if (own.value < STANDS)
   {
     return { "velocity_scale", "the angle stands still while the velocity says that the joint moves",
              Reason::VELOCITY_SCALE };
   }
-  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times the velocity",
+  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times as fast as recorded",
            Reason::VELOCITY_SCALE };
 }
 }  // namespace
@@ -84,7 +86,7 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 double likelyTimeScale(double period)
 {
   constexpr double FASTEST_ROWS = 0.5e-3;  // [s]
-  constexpr double LONG = 0.5;             // period that no telemetry has [s]
+  constexpr double LONG = 0.5;             // least time between rows that is no telemetry [s]
   if (period < LONG)
   {
     return 1.0;
@@ -232,7 +234,7 @@ FittedFactor RecordingFit::stampFactor() const
   return 2 * agree > likely.size() ? middle : FittedFactor();
 }
 
-/// Finding on rows too far apart, or on stamps that angles and velocities contradict.
+/// Finding on rows that are too far apart, or on stamps that contradict angles and velocities.
 std::optional<RecordingFinding> RecordingFit::ofTimes() const
 {
   constexpr std::uint64_t FEW_ROWS = 10;
@@ -240,10 +242,10 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
   {
     const double period = slow_time_ / static_cast<double>(slow_rows_);
     return RecordingFinding{ "period",
-                             "rows come " + rounded(period) + " s apart by their stamps (" + rounded(1.0 / period) +
+                             "by their stamps the rows are " + rounded(period) + " s apart (" + rounded(1.0 / period) +
                                  " Hz), more than " + rounded(SLOW_ROWS) + " s: accelerations and loads are unknown" +
-                                 (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (of a recording "
-                                                                  "`joint_twin check` tries --time-scale)" :
+                                 (likelyTimeScale(period) < 1.0 ? ", or the stamps are of another unit (`joint_twin "
+                                                                  "check` tries --time-scale on a recording)" :
                                                                   ""),
                              Reason::ROW_RATE };
   }
@@ -253,9 +255,9 @@ std::optional<RecordingFinding> RecordingFit::ofTimes() const
     const std::string factor = rounded(stamps.value);
     return RecordingFinding{ "stamps",
                              "by their stamps the angles change " + factor +
-                                 " times as fast as the velocities say: times, accelerations and loads are wrong (of a "
-                                 "recording `joint_twin check` tries --time-scale " +
-                                 factor + ")",
+                                 " times as fast as the velocities say: times, accelerations and loads are wrong "
+                                 "(`joint_twin check` tries --time-scale " +
+                                 factor + " on a recording)",
                              Reason::STAMPS };
   }
   return std::nullopt;
@@ -275,15 +277,14 @@ std::optional<RecordingFinding> RecordingFit::ofCurrents() const
     return std::nullopt;
   }
   return RecordingFinding{ "current_lag",
-                           "the currents come " + lagText(lag, CurrentLag::LONGEST) +
-                               " than the motion that draws them, in most joints: friction and load are not what they "
-                               "look like",
+                           "in most joints the currents come " + lagText(lag, CurrentLag::LONGEST) +
+                               " than the motion that draws them: friction and load by these currents are wrong",
                            Reason::STAMPS };
 }
 
 EffortFit RecordingFit::effort() const
 {
-  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // largest share of the factor with which the effort contains the load
+  constexpr double MAX_UNCERTAINTY = 1.0 / 3.0;  // largest uncertainty of the factor, as a share of the factor [-]
   EffortFit fit;
   fit.unit = joints_.front().effort;
   double weights = 0.0;
@@ -293,7 +294,7 @@ EffortFit RecordingFit::effort() const
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    // The weight is the load and not the certainty, because a dead current would be the most certain one.
+    // The weight is the load and not the certainty, because a current that never changes would be the most certain one.
     double weight = 0.0;
     const FittedFactor slope = joint.lag.now().slope(weight);
     if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
@@ -305,7 +306,7 @@ EffortFit RecordingFit::effort() const
     squares += weight * weight * slope.uncertainty * slope.uncertainty;
     for (std::size_t unit = 0; unit < units.size(); ++unit)
     {
-      // If the effort is of this unit, its current is too large by as much as the configured unit's factor.
+      // If the efforts have this unit, the currents by the configured unit are too large by this factor.
       expected[unit] +=
           weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
     }
@@ -347,7 +348,7 @@ RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
 
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
-  constexpr double MIN_SHARE = 0.1;  // least share of the moving rows; jolts where pieces are joined are fewer
+  constexpr double MIN_SHARE = 0.1;  // least share of fast rows among the moving rows; jumps in a recording make fewer
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
@@ -364,8 +365,8 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {
     findings.push_back({ "angle_unit",
-                         "angles change by more than " + rounded(FASTEST) +
-                             " rad/s: they are in degrees (make them rad), or the stamps are wrong",
+                         "the angles change by more than " + rounded(FASTEST) +
+                             " rad/s: they are in degrees (convert them to rad), or the stamps are wrong",
                          Reason::ANGLE_UNIT });
   }
   if (std::optional<RecordingFinding> currents = ofCurrents())
@@ -377,15 +378,15 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   if (found.is_known && found.unit != joints_.front().effort)
   {
     findings.push_back({ "effort_unit",
-                         std::string("effort looks like ") + effortUnitName(found.unit) + ", not " +
+                         std::string("the effort looks like ") + effortUnitName(found.unit) + ", not like " +
                              effortUnitName(joints_.front().effort) + ": set telemetry.effort: " +
-                             effortKeyword(found.unit) + ", unless the arm is another than given",
+                             effortKeyword(found.unit) + ", unless the arm is not the given one",
                          Reason::EFFORT_UNIT });
   }
   else if (std::isfinite(found.factor.value) && std::abs(std::log(found.factor.value / MILLI)) < std::log(WIDE))
   {
     findings.push_back({ "effort_unit",
-                         std::string("effort looks a thousand times too large for ") +
+                         std::string("the effort looks a thousand times too large for ") +
                              effortUnitName(joints_.front().effort) + ": divide it by 1000",
                          Reason::EFFORT_UNIT });
   }
@@ -393,9 +394,9 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
            (isOtherLoad(found.factor) || (!found.is_known && differs(found.factor, 1.0))))
   {
     findings.push_back({ "gain",
-                         "effort changes " + rounded(found.factor.value) +
-                             " times as much with the load as telemetry.torque_per_current says: another arm, gain, "
-                             "payload or mounting than configured",
+                         "the effort changes " + rounded(found.factor.value) +
+                             " times as much with the load as telemetry.torque_per_current says. The reason is another "
+                             "arm, gain, payload or mounting than configured",
                          isOtherLoad(found.factor) ? std::make_optional(Reason::LOAD_WRONG) : std::nullopt });
   }
   return findings;
@@ -432,9 +433,10 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
   {
-    findings.push_back({ "current_lag",
-                         "current " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
-                         Reason::STAMPS });
+    findings.push_back(
+        { "current_lag",
+          "the current comes " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
+          Reason::STAMPS });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {
@@ -451,14 +453,14 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   else if (std::isfinite(own.value) && std::isfinite(lag.value) &&
            std::abs(lag.value) > LAG_OFF + DEVIATIONS * lag.uncertainty)
   {
-    findings.push_back(
-        { "lag",
-          "velocity " + rounded(std::abs(lag.value)) + " s " + (lag.value > 0.0 ? "after" : "before") + " the angle",
-          Reason::VELOCITY_LAG });
+    findings.push_back({ "lag",
+                         "the velocity comes " + rounded(std::abs(lag.value)) + " s " +
+                             (lag.value > 0.0 ? "after" : "before") + " the angle",
+                         Reason::VELOCITY_LAG });
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "velocity taken from the angles", std::nullopt });
+    findings.push_back({ "no_velocity", "no velocity is recorded; the angles give the velocity", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {

@@ -25,11 +25,11 @@ namespace hjt
 namespace
 {
 constexpr double PERIOD = 0.008;         // time between set points [s]
-constexpr double LARGEST = 100.0;        // largest angle; a joint may turn without end [rad]
+constexpr double LARGEST = 100.0;        // largest angle, for joints that turn without end [rad]
 constexpr double LONGEST_REST = 3600.0;  // longest rest after a move [s]
 constexpr const char* MOVES = "moves";
 
-/// Reads the moves of a program. Values at the top of the file count for each move that does not give its own.
+/// Reads the moves of a program. A value at the top of the file holds for each move that does not give its own value.
 class ProgramReader
 {
 public:
@@ -66,7 +66,7 @@ public:
   ArmPose start()
   {
     ArmPose start(joints_);
-    fields_("start", "rad", start, Range{ -LARGEST, LARGEST }, "angles of all joints where it begins");
+    fields_("start", "rad", start, Range{ -LARGEST, LARGEST }, "angles of all joints at the start");
     return start;
   }
 
@@ -107,10 +107,10 @@ private:
     fields_(at + "to", "rad", move.target, Range{ -LARGEST, LARGEST }, "angles of all joints");
     fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "largest speed of the joint that goes farthest");
     fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 },
-            "largest acceleration of that joint");
+            "largest acceleration of the joint that goes farthest");
     if (holds(at + "jerk"))
     {
-      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "largest jerk of that joint");
+      fields_(at + "jerk", "rad/s^3", move.jerk, Range{ 1e-2, 1e6 }, "largest jerk of the joint that goes farthest");
     }
     if (holds(at + "wait"))
     {
@@ -123,9 +123,9 @@ private:
   FieldReader fields_;
 };
 
-/// Set points of a program, a YAML file of moves between via points (docs/arm_twin.md), at 125 Hz. The arm rests for
-/// half a second before and after the moves. @throws ParameterError naming file, line and key, or the joint and its
-/// limit.
+/// Reads a program and returns its set points at 125 Hz. A program is a YAML file of moves between via points
+/// (docs/arm_twin.md). The arm rests for half a second before and after the moves. @throws ParameterError naming file,
+/// line and key, or the joint and its limit.
 std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescription& arm)
 {
   ProgramReader reader(path, arm.joints.size());
@@ -136,7 +136,7 @@ std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescri
   return points;
 }
 
-/// Number of the column that has one of these names; -1 if there is none.
+/// Index of the column that has one of these names; -1: there is no such column.
 int columnOf(const std::vector<std::string>& header, const std::vector<std::string>& names)
 {
   for (const std::string& name : names)
@@ -150,8 +150,8 @@ int columnOf(const std::vector<std::string>& header, const std::vector<std::stri
   return -1;
 }
 
-/// Time in which the joints go from one set point to the next at their speeds, by least squares; NaN if the joints are
-/// too slow to tell [s].
+/// Time that the joints need from one set point to the next at their speeds, by least squares [s]; NaN: the joints are
+/// too slow.
 double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least_speed)
 {
   double way = 0.0;
@@ -165,8 +165,8 @@ double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least
   return squares > least_speed * least_speed ? way / squares : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Sets speeds of a motion's first or last set point to zero. Their speeds are those in the middle of the row beside
-/// it. A joint is at rest there if it can start or stop within the row of that length [s].
+/// Sets speeds of the first or last set point of a motion to zero. `point` has the mean speeds of the row beside it,
+/// which lasts `length` [s]. A joint is at rest in the set point if it can start or stop within this time.
 void restAtEnd(double length, ArmSetPoint& point)
 {
   constexpr double ACCELERATION = 10.0;  // [rad/s^2]
@@ -176,13 +176,13 @@ void restAtEnd(double length, ArmSetPoint& point)
   }
 }
 
-/// Text on speeds of a joint that have another unit or sign than the angles; empty if there are none.
+/// Says that the speeds of a joint have another unit or sign than its angles; empty: the speeds fit the angles.
 std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
 {
-  constexpr double LEAST_WAY = 0.1;        // least way of a joint that is checked [rad]
-  constexpr double LEAST_PART = 1e-4;      // least way of a row that counts [rad]
-  constexpr std::size_t LEAST_ROWS = 3;    // least rows in motion; with fewer rows the way is a jump
-  constexpr Range SAME_RATES{ 0.5, 2.0 };  // allowed median of speeds over the angles' rates
+  constexpr double LEAST_WAY = 0.1;        // least sum of a joint's motion with which it is checked [rad]
+  constexpr double LEAST_PART = 1e-4;      // least motion in a row that counts [rad]
+  constexpr std::size_t LEAST_ROWS = 3;    // least number of rows with motion; fewer rows are a jump
+  constexpr Range SAME_RATES{ 0.5, 2.0 };  // allowed median of the speed over the rate of the angle [-]
   double way = 0.0;                        // [rad]
   std::vector<double> ratios;
   for (std::size_t k = 1; k < points.size(); ++k)
@@ -199,7 +199,7 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
   const double ratio = way > LEAST_WAY && ratios.size() >= LEAST_ROWS ? upperMedian(ratios.begin(), ratios.end()) : 1.0;
   if (ratio < SAME_RATES.min || ratio > SAME_RATES.max)
   {
-    return "its speeds are " + roundedText(ratio, 3) + " of the rate of its angles, allowed: 0.5 ... 2 (" +
+    return "its speeds are " + roundedText(ratio, 3) + " times the rate of its angles, allowed: 0.5 ... 2 (" +
            (ratio < 0.0 ? "of the other sign" :
             ratio > 1.0 ? "degrees/s?" :
                           "none?") +
@@ -208,7 +208,7 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
   return {};
 }
 
-constexpr double LONGEST = 1e6;  // longest motion, eleven days [s]
+constexpr double LONGEST = 1e6;  // longest motion, some eleven days [s]
 
 std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
 {
@@ -224,12 +224,11 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// Text on a joint that would turn faster than in any controller's set points, which may be a little faster than the
-/// joint.
+/// Says which joint would turn far faster than its limit. The set points of a controller may be a little faster.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
-  constexpr double TIMES = 3.0;  // largest multiple of the joint's speed limit
-  constexpr double SHORT = 0.1;  // time over which speeds are taken, because single stamps jitter [s]
+  constexpr double TIMES = 3.0;  // largest multiple of the joint's speed limit [-]
+  constexpr double SHORT = 0.1;  // time over which speeds are averaged, because single stamps jitter [s]
   std::size_t from = 0;
   for (const ArmSetPoint& to : points)
   {
@@ -253,7 +252,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
   return {};
 }
 
-/// Text on a joint that cannot bear links and payload at rest in a set point; empty if all joints can.
+/// Says which joint cannot bear links and payload at rest in a set point; empty: all joints can.
 std::string weightErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
   ArmDynamics dynamics(arm);
@@ -313,12 +312,12 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 
 double straightenTimes(std::vector<ArmSetPoint>& points)
 {
-  constexpr double MOVING = 0.05;      // least speed of all joints together [rad/s]
-  constexpr double SAME_RATES = 0.02;  // largest share by which the speeds differ from the angles' rates
-  constexpr double JITTER = 0.1;       // least jitter that counts, rms over the step
-  constexpr double LONGEST = 4.0;      // longest step over that of the stamps
+  constexpr double MOVING = 0.05;      // least speed of all joints, as the root of the sum of squares [rad/s]
+  constexpr double SAME_RATES = 0.02;  // largest share by which speeds and rates of the angles may differ [-]
+  constexpr double JITTER = 0.1;       // least jitter that counts, rms, as a share of the step [-]
+  constexpr double LONGEST = 4.0;      // longest step over the step of the stamps [-]
   std::vector<double> steps;
-  double by_stamps = 0.0;  // sum of the steps in motion [s]
+  double by_stamps = 0.0;  // sum of the stamps' steps in motion [s]
   double by_motion = 0.0;
   double squares = 0.0;
   double moving = 0.0;
@@ -351,13 +350,13 @@ double straightenTimes(std::vector<ArmSetPoint>& points)
 
 std::string straightenedText(double change)
 {
-  return "the set points' times do not go with their angles and speeds: moved, a step by up to " +
+  return "the times of the set points do not fit their angles and speeds. The program changed time steps by up to " +
          fixedText(1e3 * change, 1) + " ms";
 }
 
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
-  // The comparisons are written so that NaN fails.
+  // The negated comparisons are true for NaN, so NaN is refused.
   for (std::size_t k = 0; k < points.size(); ++k)
   {
     const ArmSetPoint& point = points[k];
@@ -365,17 +364,17 @@ std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescri
     const double time = point.time - points.front().time;
     if (k > 0 && !(point.time > points[k - 1].time))
     {
-      return place + "the time does not go on, " + numberText(point.time) + " s after " +
+      return place + "the time does not increase: " + numberText(point.time) + " s after " +
              numberText(points[k - 1].time) + " s";
     }
     if (point.joints.size() != arm.joints.size())
     {
-      return place + "it is of " + std::to_string(point.joints.size()) + " joints; the arm has " +
+      return place + "it has " + std::to_string(point.joints.size()) + " joints, but the arm has " +
              std::to_string(arm.joints.size());
     }
     if (!(time <= LONGEST))
     {
-      return place + "it is " + numberText(time) + " s after the first, allowed: " + numberText(LONGEST) + " s";
+      return place + "it is " + numberText(time) + " s after the first one, allowed: " + numberText(LONGEST) + " s";
     }
     for (std::size_t i = 0; i < arm.joints.size(); ++i)
     {
@@ -480,7 +479,8 @@ std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
   {
     ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
     const double length = points[k].time - points[k - 1].time;
-    // The acceleration of a cubic is greatest at its ends, which belong to the set points' neighbours too.
+    // The acceleration of a cubic is largest at its ends. The shares leave the set points out, because neighbours share
+    // them.
     for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
     {
       piece.at(points[k - 1].time + share * length, motion);
@@ -500,14 +500,14 @@ std::string MotionLimits::errorsAt(const std::vector<JointMotion>& motion, doubl
   {
     const Joint& joint = joints_[i];
     const double motor = std::abs(torques_[i] + joint.motor_inertia * motion[i].acceleration);
-    // Written so that NaN fails.
+    // The comparison is false for NaN, so NaN is refused.
     const bool links_can = joint.torque_limit == 0.0 || std::abs(torques_[i]) <= joint.torque_limit;
     if (!links_can || !(motor <= joint.motor_limit))
     {
       return joint.name + " would need " + roundedText(links_can ? motor : std::abs(torques_[i]), 3) +
              (links_can ? " N.m of its motor" : " N.m") + " before " + roundedText(before, 4) + " s, at " +
              roundedText(motion[i].acceleration, 3) + " rad/s^2; " + (links_can ? "it has " : "its limit is ") +
-             roundedText(links_can ? joint.motor_limit : joint.torque_limit, 4);
+             roundedText(links_can ? joint.motor_limit : joint.torque_limit, 4) + " N.m";
     }
   }
   return {};

@@ -42,7 +42,7 @@ double UnitLoads::linksMass() const
   return mass;
 }
 
-/// Goes from the frame of the link before to that of `link`.
+/// Moves `at` from the frame of the link before to the frame of `link`.
 void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
 {
   const Eigen::Vector3d axis = at.orientation * link.axis;
@@ -74,8 +74,8 @@ void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
   at.orientation *= link.rotation;
 }
 
-/// Returns the motion of the tip, and sets the place of each joint. `visit` gets the motion of each body, with the
-/// payload last, and the number of joints before the body.
+/// Computes the motion of the tip and the place of each joint. Calls `visit` with the motion of each body, the payload
+/// last, and with the number of joints before the body.
 template <class Visit>
 UnitLoads::Motion UnitLoads::walk(const std::vector<JointMotion>& motion, const Visit& visit)
 {
@@ -147,10 +147,10 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
     columns(row, 0) = joint.effort(of_mass, tip.place, Eigen::Vector3d::Zero());
     for (Eigen::Index axis = 0; axis < 3; ++axis)
     {
-      // The part of a mass at the end of this arm that is linear in the arm; the inertia is quadratic.
+      // This is the part of a mass at the end of the arm that is linear in the arm. The inertia is quadratic.
       const Eigen::Vector3d arm = tip.orientation.col(axis);
       columns(row, 1 + axis) = joint.effort(tip.swing(arm), tip.place, arm.cross(of_mass));
-      // The weight of what the joint carries: its moment about a joint that turns, its force on one that slides.
+      // The weight of what the joint carries: its moment about a joint that turns, or its force on a joint that slides.
       const Eigen::Vector3d up = -Eigen::Vector3d::Unit(axis);
       columns(row, 4 + axis) = joint.turns ? joint.axis.dot((joint.moment - joint.mass * joint.origin).cross(up)) :
                                              joint.mass * joint.axis.dot(up);

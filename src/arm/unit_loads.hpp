@@ -10,31 +10,31 @@
 
 namespace hjt
 {
-/// Torques at an arm's joints: those of its own links, or those of unit payloads, unit gravity and a unit drag. Each
-/// set of torques takes one walk along the links, less time than with ArmDynamics, and differs from ArmDynamics by
-/// rounding only. After construction nothing throws or allocates.
+/// Torques at an arm's joints, either of its own links, or of unit payloads, unit gravity and a unit drag. Each
+/// function walks once along the links and takes less time than ArmDynamics. Its result differs from that of
+/// ArmDynamics only by rounding. After construction nothing throws or allocates.
 class UnitLoads
 {
 public:
   static constexpr int COLUMNS = 10;
-  using Torques = Eigen::Matrix<double, COLUMNS, 1>;  ///< torques of one joint by unit loads
+  using Torques = Eigen::Matrix<double, COLUMNS, 1>;  ///< torques at one joint by each unit load
 
   explicit UnitLoads(const ArmDescription& arm);
 
   double linksMass() const;  ///< mass of the links without the payload [kg]
 
-  /// Gives the torques at each joint, a row, of unit loads. The columns are: mass [N.m/kg] and three moments
-  /// [N.m/(kg.m)] of a payload, gravity along each axis of the base's frame [N.m/(m/s^2)], a force against the tip's
-  /// motion [N.m/N], and forces on the tip along two directions across gravity [N.m/N].
+  /// Computes the torques of unit loads at each joint. A row is a joint. The columns are: mass [N.m/kg] and three
+  /// moments [N.m/(kg.m)] of a payload, gravity along each axis of the base's frame [N.m/(m/s^2)], a force against the
+  /// tip's motion [N.m/N], and forces on the tip along two directions across gravity [N.m/N].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns) noexcept;
 
-  /// Gives the torques of links, payload and drag at each joint [N.m].
+  /// Computes the torques of links, payload and drag at each joint [N.m].
   void own(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
   void setPayload(const Payload& payload) noexcept { payload_ = payload; }  ///< replaces the payload of the description
 
 private:
-  /// A link, in the frames of an ArmLink.
+  /// A link with its fields as in ArmLink.
   struct Link
   {
     LinkMotion motion{};
@@ -47,24 +47,24 @@ private:
     Eigen::Matrix3d inertia;
   };
 
-  /// A joint and what it carries, in the base's frame.
+  /// A joint in the frame of the base, and the mass that it carries.
   struct Joint
   {
     bool turns{};
     Eigen::Vector3d axis;
     Eigen::Vector3d origin;
-    double mass{};           // mass that it carries [kg]
-    Eigen::Vector3d moment;  // moment of that mass [kg.m], or of the force on it [N.m], about the base
-    Eigen::Vector3d force;   // force on that mass [N]
+    double mass{};           // mass that the joint carries [kg]
+    Eigen::Vector3d moment;  // moment about the base of that mass [kg.m], or of the force on it [N.m]
+    Eigen::Vector3d force;   // force on the carried mass [N]
 
-    /// Torque, or force along the axis, of a joint that bears a force at a place and a moment.
+    /// Torque of a joint, or its force along the axis, under a force at `place` and a moment `couple`.
     double effort(const Eigen::Vector3d& force, const Eigen::Vector3d& place, const Eigen::Vector3d& couple) const
     {
       return axis.dot(turns ? Eigen::Vector3d(couple + (place - origin).cross(force)) : force);
     }
   };
 
-  /// Motion of a link's frame, in the base's frame.
+  /// Motion of a link's frame in the frame of the base.
   struct Motion
   {
     Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();

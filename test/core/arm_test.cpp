@@ -365,7 +365,7 @@ TEST(ArmDynamics, RefusesLinksThatNoRobotHas)
     nest = "<a>" + nest + "</a>";
   }
   deep.urdf = replaced(sound.urdf, "</robot>", flat + nest + "</robot>");
-  EXPECT_THAT(complaintOf([&] { readLinks(deep); }), testing::HasSubstr("more than 100 elements"));
+  EXPECT_THAT(complaintOf([&] { readLinks(deep); }), testing::HasSubstr("more than 100 levels of nested elements"));
   deep.urdf = replaced(sound.urdf, "</robot>", flat + nest.substr(3, nest.size() - 7) + "<b/></robot>");
   EXPECT_EQ(complaintOf([&] { readLinks(deep); }), "");
 }
@@ -387,7 +387,7 @@ TEST(SetPoints, NoArmIsToldWhatItCannotDo)
   EXPECT_THAT(errors(std::nan(""), 1.0), testing::HasSubstr("out of range"));
   EXPECT_THAT(errors(2.9, 0.2), testing::HasSubstr("elbow_joint would turn at 14.5 rad/s at 0.2 s, its limit is 3.14"));
   EXPECT_THAT(errors(2.9, 6e8), testing::HasSubstr("set point 2: it is 6.0e+8 s after the first"));
-  EXPECT_THAT(errors(0.0, 0.0), testing::HasSubstr("set point 2: the time does not go on"));
+  EXPECT_THAT(errors(0.0, 0.0), testing::HasSubstr("set point 2: the time does not increase"));
 }
 }  // namespace
 }  // namespace hjt

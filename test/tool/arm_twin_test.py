@@ -64,7 +64,7 @@ class ArmTwin(tool.ToolTest):
                 rows.writerow([duration * k / steps] + angles + speeds)
         done = self.run_tool("arm", "motion.csv", "--arm", "ur5", "--out", "run.csv", "--json", "--set",
                              "solver.scene=full_ring")
-        self.assertIn("the set points' times do not go with their angles and speeds: moved, a step by up to 8.0 ms",
+        self.assertIn("do not fit their angles and speeds. The program changed time steps by up to 8.0 ms",
                       done.stderr)
         elbow = json.loads(done.stdout)["joints"][2]
         self.assertLess(elbow["angle_error_max"], 3.0, elbow)  # [mrad]; with the stamps as they are some 10
@@ -139,9 +139,9 @@ class ArmTwin(tool.ToolTest):
         header = "timestamp," + ",".join(f"{name}_{i}" for name in ("target_q", "target_qd") for i in range(JOINTS))
         for scale, speed_scale, text in (
                 (180 / math.pi, 180 / math.pi, "set point 1: shoulder_pan_joint: angle = 43.5"),
-                (1.0, -1.0, "base: its speeds are -1 of the rate of its angles, allowed: 0.5 ... 2 (of the other"),
-                (1.0, 180 / math.pi, "base: its speeds are 57.3 of the rate of its angles"),
-                (1.0, 0.0, "base: its speeds are 0 of the rate of its angles, allowed: 0.5 ... 2 (none?)")):
+                (1.0, -1.0, "base: its speeds are -1 times the rate of its angles, allowed: 0.5 ... 2 (of the other"),
+                (1.0, 180 / math.pi, "base: its speeds are 57.3 times the rate of its angles"),
+                (1.0, 0.0, "base: its speeds are 0 times the rate of its angles, allowed: 0.5 ... 2 (none?)")):
             rows = [[0.08 * k] + [scale * (0.76 + 0.08 * k)] * JOINTS + [speed_scale] * JOINTS for k in range(4)]
             self.write("motion.csv", "\n".join([header] + [",".join(map(str, row)) for row in rows]) + "\n")
             self.fail_with(1, [f"motion.csv: {text}"], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv")
