@@ -189,8 +189,7 @@ void giveOwnSeeds(std::vector<Parameters>& drives)
     ManufactureParameters& errors = drives[i].manufacture;
     for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
     {
-      // Without a pitch deviation the seed does not change the gear. The seed then stays, so that equal joints can
-      // share a response surface.
+      // The seed has an effect only with a deviation. Joints with equal seeds can share a response surface.
       if (pitch->deviation > 0.0)
       {
         pitch->seed = (pitch->seed + 2 * static_cast<int>(i)) % SEEDS;

@@ -82,8 +82,7 @@ double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexce
   return twin.stamp() == controlled_ ? before_[joint] : speed_[joint];
 }
 
-/// Puts the set point into the delay lines of the joints. The first set point after a reset fills all places of the
-/// lines.
+/// Puts the set point into the delay lines of the joints. The first set point after a reset fills the whole lines.
 void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   dynamics_.torques(set_point, rigid_);

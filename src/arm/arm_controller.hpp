@@ -49,13 +49,11 @@ public:
 
   bool isDue(const ArmTwin& twin) const noexcept;  ///< whether the control acts at the present instant
 
-  /// Rigid-body torque of each joint for the last set point [N.m]. The controller feeds it forward after
-  /// ArmJoint::delay.
+  /// Rigid-body torque of each joint for the last set point, which acts after ArmJoint::delay [N.m].
   const std::vector<double>& rigidTorques() const noexcept { return rigid_; }
   /// Number of controls since reset in which a joint's feedback was at its limit while its brake was off [-].
   std::uint64_t limitedControls() const noexcept { return limited_; }
-  /// Whole torque of a joint that the controller feeds forward: rigid-body torque, inertia of the motor and friction
-  /// [N.m].
+  /// Whole torque that the controller feeds forward: rigid-body torque, inertia of the motor and friction [N.m].
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
   /// Speed of a joint by the motor's encoder [rad/s]. While the controller runs, it is the speed from which the
   /// controller computed the present torque; otherwise it is the present speed.

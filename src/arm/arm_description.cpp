@@ -202,8 +202,7 @@ std::size_t depthOf(const std::string& xml)
   return deepest;
 }
 
-/// Keeps the first error that the URDF parser reports while this object exists. The parser only reports numbers that it
-/// cannot read, and goes on.
+/// Keeps the first error of the URDF parser while this object exists. The parser skips numbers that it cannot read.
 class ParserErrors : public console_bridge::OutputHandler
 {
 public:

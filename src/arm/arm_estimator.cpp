@@ -87,8 +87,7 @@ constexpr std::size_t FEWEST = 20;  // least number of rows with which a joint c
 constexpr double INDEPENDENT = 40.0;  // largest number of independent rows that the rows of a joint stand for
 constexpr double LEAST = 0.02;        // least standard deviation of the errors in the rows of a real arm [A]
 
-/// Negative logarithm of a row's probability, relative to a row without error. `square`: square of the error in
-/// standard deviations.
+/// Negative logarithm of a row's probability. `square`: square of the row's error in standard deviations.
 double rarer(double square)
 {
   return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
@@ -237,8 +236,7 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// The likeliest point of all starts. The last start assumes that all currents differ from the predicted ones by one
-/// factor.
+/// The likeliest point of all starts. The last start assumes that one factor scales all predicted currents.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;

@@ -36,8 +36,7 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   {
     reset();
   }
-  // If the row of one joint is impossible, the rows of all joints are refused, so that all joints have rows of the same
-  // times.
+  // An impossible row of one joint drops the rows of all joints, so that all joints have rows of the same times.
   const bool is_plausible = std::all_of(
       rows.begin(), rows.end(), [](const MotionRow& row) { return isPlausible(row) && std::isfinite(row.load); });
   if (!is_plausible || time < last_time_ + MotionDifferentiator::MIN_STEP)

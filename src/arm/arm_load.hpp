@@ -36,8 +36,7 @@ public:
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// Returns by how much the stamp of the rows is late [s]. `rows`: one row of each joint, later than those of the last
-  /// call.
+  /// Returns by how much the stamp of the rows is late [s]. `rows`: one row of each joint, later than the last rows.
   double stampError(const std::vector<MotionRow>& rows) noexcept
   {
     const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
@@ -64,8 +63,7 @@ private:
   static constexpr double MEMORY = 10.0;  // time constant of the forgetting [s]
   static constexpr double START = 0.25;   // first value of both sums: that of 1 s at 0.5 rad/s [rad^2/s]
 
-  /// Time from the last rows to `rows` [s]: by the motion if it clearly contradicts the stamps, otherwise by the
-  /// stamps.
+  /// Time from the last rows to `rows` [s]: by the motion if it clearly contradicts the stamps, else by the stamps.
   double interval(const std::vector<MotionRow>& rows) noexcept
   {
     const double by_stamps = rows.front().time - last_.front().time;

@@ -61,8 +61,7 @@ public:
   {
     if (move.jerk > 0.0)
     {
-      // Without a phase of constant speed the moving mean goes directly from acceleration to deceleration, in twice the
-      // time.
+      // Without a phase of constant speed the mean goes directly from acceleration to deceleration, in twice the time.
       const double once = acceleration_ / move.jerk;
       mean_ = end_ - 2.0 * rise_ >= once ? once : 2.0 * once;
     }
@@ -287,8 +286,7 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
   std::vector<ArmSetPoint> points(STEPS + 1, point);
   for (std::size_t k = 0; k < STEPS; ++k)
   {
-    // The speed is a cubic of the share s of the time. Speed and acceleration are 0 at s = 0, and those of `point` at s
-    // = 1.
+    // The speed is a cubic of the share s of the time. At s = 0 the joints rest; at s = 1 they move as in `point`.
     const double s = static_cast<double>(k) / static_cast<double>(STEPS);
     points[k].time = point.time - (1.0 - s) * length;
     for (std::size_t i = 0; i < point.joints.size(); ++i)

@@ -44,8 +44,7 @@ public:
   std::size_t joints() const noexcept { return points_.front().joints.size(); }
   const std::vector<ArmSetPoint>& points() const noexcept { return points_; }
 
-  /// Computes the motion of each joint at a time [s]. It is fast if the time only increases from call to call. `motion`
-  /// has an entry for each joint.
+  /// Computes the motion of each joint at a time [s], fast if times increase. `motion` has an entry for each joint.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
   /// In a motion of two set points, the second becomes the first, and this one the second. It need not be at rest.

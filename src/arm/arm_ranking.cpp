@@ -31,8 +31,7 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// Adds a sample without torques, whose currents are efforts. `counts`: whether the fit of the load takes the sample
-  /// too.
+  /// Adds a sample without torques, whose currents are efforts. `counts`: whether the fit of the load takes it.
   void add(const ArmSample& sample, bool counts)
   {
     sample_ = sample;

@@ -15,8 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Weights of the last three steps' values in the polynomial that gives the value of the next step, by the polynomial's
-/// order.
+/// Weights of the last three steps' values in the extrapolation to the next step, by the polynomial's order.
 constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
   { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
 };

@@ -24,13 +24,11 @@ struct IdentifiedPayload
   std::array<double, 3> moment_half_width{};  ///< half widths of the moments' 95 % intervals [kg.m]
   double least_claim{};  ///< largest mass that arms with links of this mass show without a payload [kg]
 
-  /// Whether the configured mass lies outside the interval of `mass`, and differs from `mass` by more than
-  /// `least_claim`.
+  /// Whether the configured mass is outside the interval of `mass` and differs from `mass` by more than `least_claim`.
   bool differs() const;
   /// Whether the 95 % interval of the mass lies above zero.
   bool isCarried() const { return mass > mass_half_width; }
-  /// Whether the payload differs from the configured one, and is either a mass above zero, or none although one is
-  /// configured.
+  /// Whether the payload differs from the configured one, and is above zero, or zero although one is configured.
   bool isOther() const;
   /// The payload with its centre of mass; a payload without mass if isCarried() is false.
   Payload payload() const;
@@ -115,8 +113,7 @@ struct AssumedLoad
 struct JudgedJoints
 {
   JudgedJoints() = default;
-  /// `fit`: fit of the rows. `misfits`: misfits with which the frictions were measured. `tolerance`: as in
-  /// commonFriction().
+  /// `fit`: of the rows; `misfits`: those with which the frictions were measured; `tolerance`: as in commonFriction().
   JudgedJoints(const RecordingFit& fit, std::vector<Misfit> misfits, std::vector<MeasuredFriction> frictions,
                double tolerance);
 

@@ -130,8 +130,7 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
-/// Multiples of the golden ratio spread the drawn rows. Every nth row would always show the same part of a repeated
-/// motion.
+/// Multiples of the golden ratio spread the drawn rows evenly, also over a motion that repeats.
 bool LoadFit::isDrawn(std::size_t number, double share)
 {
   constexpr double GOLDEN = 0.6180339887498949;
@@ -439,8 +438,7 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   {
     return found;
   }
-  // A difference of one payload from the configured one is an error of the links' masses, which the other payload has
-  // too.
+  // The difference of one payload from the configured one is an error of the links, which the other payload has too.
   found.otherwise = found.payload;
   const bool is_known = !found.otherwise.differs();
   const ArmEstimator::Carried other =

@@ -49,8 +49,7 @@ public:
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
             const SurfaceSource& surface_source, double settling = SETTLING);
 
-  /// Sets the arm back to the start of the motion given at construction. Returns false for the reasons of
-  /// ArmTwin::reset().
+  /// Sets the arm back to the start of the motion given at construction. Returns false as ArmTwin::reset() does.
   bool reset(Stamp stamp) noexcept;
 
   /// Makes one step, as ArmTwin::step(), with the commands of the controller.

@@ -29,8 +29,7 @@ constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays the same [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty, because simulated data may have none
 
-/// Text on the lag of currents behind their motion, such as "0.2 s later". `longest`: longest lag that the fit tries
-/// [s].
+/// Text on the lag of currents behind their motion, such as "0.2 s later". `longest`: longest lag of the fit [s].
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;

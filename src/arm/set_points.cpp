@@ -150,8 +150,7 @@ int columnOf(const std::vector<std::string>& header, const std::vector<std::stri
   return -1;
 }
 
-/// Time that the joints need from one set point to the next at their speeds, by least squares [s]; NaN: the joints are
-/// too slow.
+/// Time from one set point to the next by the joints' speeds, a least-squares fit [s]; NaN: the joints are too slow.
 double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least_speed)
 {
   double way = 0.0;
@@ -479,8 +478,7 @@ std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
   {
     ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
     const double length = points[k].time - points[k - 1].time;
-    // The acceleration of a cubic is largest at its ends. The shares leave the set points out, because neighbours share
-    // them.
+    // The acceleration of a cubic is largest at its ends. The set points themselves also belong to their neighbours.
     for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
     {
       piece.at(points[k - 1].time + share * length, motion);
