@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// Common factor of the joints from `begin` to `end`, beside the `factors` that are known already.
+/// Common factor of the joints from `begin` to `end`, apart from the known `factors` of the joints.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
 {
@@ -36,7 +36,7 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
 }
 
 /// The temperature at which the median friction of the joints is that of their twins. None if a temperature was
-/// received, or if it is not within COLDEST and WARMEST.
+/// received, or if no temperature between COLDEST and WARMEST explains the friction.
 std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
   constexpr double COLDEST = 0.0;  // lowest possible temperature of the drives [degC]
@@ -61,7 +61,7 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
   {
     return std::nullopt;
   }
-  for (int i = 0; i < HALVINGS; ++i)  // the twins' friction falls with the temperature
+  for (int i = 0; i < HALVINGS; ++i)  // the friction of the twins falls with the temperature
   {
     const double middle = 0.5 * (low + high);
     (is_colder(middle) ? high : low) = middle;
@@ -86,8 +86,8 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   return arm;
 }
 
-/// Standard deviation of the logarithm of the other joints' mean, by the part of their scatter that is more than sound
-/// joints have from one recording to the next [-].
+/// Standard deviation of the logarithm of the other joints' mean factor, by the part of their scatter that exceeds the
+/// scatter of sound joints from one recording to the next [-].
 double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
                      const std::vector<double>& factors)
 {
@@ -108,7 +108,7 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
   return count > 1.0 ? std::sqrt(std::max(0.0, variance - UNWITNESSED * UNWITNESSED) / count) : 0.0;
 }
 
-/// Adds the common factor of a group to the arm's factors of the joints that share it.
+/// Multiplies the factors of the joints of a group by the common factor of the group.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
@@ -126,10 +126,10 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   }
 }
 
-/// Whether a joint shows as much friction as a larger joint would, apart from the factor of the whole arm.
+/// Whether a joint shows as much friction as a larger joint would, relative to the factor of the whole arm.
 bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
 {
-  constexpr double FAR_MORE = 2.0;  // times the expected friction
+  constexpr double FAR_MORE = 2.0;  // multiple of the expected friction from which on it counts as far more [-]
   bool has_one = false;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {

@@ -10,7 +10,7 @@ namespace hjt
 Eigen::Matrix2d LoadRegression::left() const
 {
   constexpr double RIDGE =
-      1e-9;  // share of the mean square; motion in one direction leaves constant and friction alike [-]
+      1e-9;  // share of the mean square, because constant and friction are alike in motion in one direction [-]
   const Eigen::Matrix<double, OTHERS, OTHERS> others =
       sums_.topLeftCorner<OTHERS, OTHERS>() +
       Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
@@ -29,8 +29,8 @@ double LoadRegression::leftByLoad() const
 
 FittedFactor LoadRegression::slopeOf(const Eigen::Matrix2d& left, double seconds)
 {
-  constexpr double CORRELATED = 0.5;   // rows nearer to each other in time have the same information [s]
-  constexpr double MIN_CONTENT = 0.1;  // least rms of the remaining load: errors of friction and inertia leave less [A]
+  constexpr double CORRELATED = 0.5;   // rows within this time have the same information [s]
+  constexpr double MIN_CONTENT = 0.1;  // least rms of the unexplained load; errors of friction and inertia are less [A]
   FittedFactor slope;
   if (seconds < MIN_SECONDS || !(left(0, 0) > MIN_CONTENT * MIN_CONTENT * seconds))
   {
@@ -57,7 +57,7 @@ constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
 
 double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 {
-  constexpr double CLEARLY = 0.75;  // largest residual with the lag, as a share of that without a lag, rms [-]
+  constexpr double CLEARLY = 0.75;  // largest rms of the residual with the lag, over that without a lag [-]
   std::size_t best = MIDDLE;
   for (std::size_t i = 1; i + 1 < CurrentLag::LAGS; ++i)
   {
@@ -71,8 +71,8 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
 {
   constexpr double CLEARLY =
-      0.93;  // largest residual with the lag, as a share of that without a lag, rms; a sound UR5 has more [-]
-  constexpr double AGREES = 0.96;  // the same share for each joint that agrees [-]
+      0.93;  // largest rms of the residual with the lag, over that without a lag; a sound UR5 has more [-]
+  constexpr double AGREES = 0.96;  // largest such ratio of a single joint that agrees with the lag [-]
   double best_share = CLEARLY;
   double best_lag = 0.0;
   for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)

@@ -22,39 +22,38 @@ class LoadRegression
 public:
   void add(double step, double velocity, double acceleration, double load, double current) noexcept
   {
-    constexpr double MEMORY = 120.0;  // time of motion over which rows are forgotten [s]
+    constexpr double MEMORY = 120.0;  // time of motion over which the regression forgets rows [s]
     Eigen::Matrix<double, OTHERS + 2, 1> row;
     row << 1.0, std::copysign(1.0, velocity), velocity, acceleration, load, current;
     sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
   }
 
   double seconds() const { return sums_(0, 0); }
-  /// Products of load and current, less what constant, friction and acceleration explain of both [A^2 s].
+  /// Products of load and current after subtraction of what constant, friction and acceleration explain [A^2 s].
   Eigen::Matrix2d left() const;
-  /// Mean square of the current that none of the columns explains [A^2]; NaN: too little motion.
+  /// Mean square of the current that no column of the regression explains [A^2]; NaN: too little motion.
   double leftByLoad() const;
-  /// Slope of the current over the load; NaN: the load varies too little. `content`: square of the load that the other
-  /// columns do not explain, summed over time.
+  /// Slope of the current over the load; NaN: the load varies too little. `content`: integral over time of the square
+  /// of the load that the other columns do not explain.
   FittedFactor slope(double& content) const;
-  /// That slope from the products that the function left() gives [A^2 s] and the time that they are of [s].
+  /// The same slope, from the products that left() gives [A^2 s] and the time over which they were summed [s].
   static FittedFactor slopeOf(const Eigen::Matrix2d& left, double seconds);
 
 private:
   static constexpr int OTHERS = 4;
   static constexpr double MIN_SECONDS = 5.0;
-  // of 1, sign, speed, acceleration, load, current
+  // Sums of the products of these columns with each other: 1, sign, speed, acceleration, load, current.
   Eigen::Matrix<double, OTHERS + 2, OTHERS + 2> sums_ = Eigen::Matrix<double, OTHERS + 2, OTHERS + 2>::Zero();
 };
 
-/// A LoadRegression for each of several lags of the current behind the motion. Memory is fixed; nothing allocates.
-///
-/// One row counts in 20 ms; between rows the motion is interpolated linearly. Only motion faster than
-/// MotionDifferentiator::SLIDING counts.
+/// One LoadRegression for each of several lags of the current behind the motion. A row counts every 20 ms. Between rows
+/// the motion is interpolated linearly. Only motion faster than MotionDifferentiator::SLIDING counts. Nothing
+/// allocates.
 class CurrentLag
 {
 public:
   static constexpr double LONGEST = 0.4;   ///< longest lag [s]
-  static constexpr double SPACING = 0.04;  ///< step from one lag to the next [s]
+  static constexpr double SPACING = 0.04;  ///< difference between two neighbouring lags [s]
   static constexpr std::size_t LAGS = 21;
 
   /// Lag number `i` of the current behind the motion [s].
@@ -62,7 +61,7 @@ public:
 
   void reset() noexcept { *this = CurrentLag(); }
 
-  /// Adds a row that is later than the row before. `load`: load of the joint as a motor current [A].
+  /// Adds a row that is later than the row before. `load`: load of the joint, as a current of the motor [A].
   void add(const MotionSample& sample, double load) noexcept
   {
     if (end_ > begin_)
@@ -79,7 +78,7 @@ public:
     take();
   }
 
-  /// LoadRegression::leftByLoad at each lag [A^2].
+  /// LoadRegression::leftByLoad for each lag [A^2].
   std::array<double, LAGS> left() const
   {
     std::array<double, LAGS> left;
@@ -94,8 +93,8 @@ public:
   const LoadRegression& now() const { return regressions_[LAGS / 2]; }
 
 private:
-  static constexpr double PERIOD = 0.019;  // least time between rows that count [s]
-  static constexpr std::size_t ROOM = 64;  // rows: more than twice LONGEST at PERIOD
+  static constexpr double PERIOD = 0.019;  // least time between two rows that count [s]
+  static constexpr std::size_t ROOM = 64;  // number of rows for more than twice LONGEST at PERIOD
 
   struct Row
   {
@@ -107,7 +106,7 @@ private:
   };
   const Row& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
 
-  /// Adds the current in the middle of the held rows to each regression, with the motion before or after it.
+  /// Adds the current in the middle of the held rows to each regression, with the motion at the lag from it.
   void take() noexcept
   {
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
@@ -124,7 +123,7 @@ private:
     }
     const double step = now.time - at(middle - 1).time;
     std::uint64_t above = end_ - 1;
-    for (std::size_t i = 0; i < LAGS; ++i)  // lags in descending order
+    for (std::size_t i = 0; i < LAGS; ++i)  // from the largest lag to the smallest
     {
       const double time = now.time - lagAt(i);
       while (above > oldest + 1 && at(above - 1).time >= time)
@@ -144,16 +143,15 @@ private:
   }
 
   std::array<Row, ROOM> rows_{};
-  std::uint64_t begin_{};  // first row without a gap
+  std::uint64_t begin_{};  // number of the first row after the last gap
   std::uint64_t end_{};
   std::array<LoadRegression, LAGS> regressions_{};
 };
 
-/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no lag is clear. `left`:
+/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no clear lag. `left`:
 /// CurrentLag::left of each joint.
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left);
 
-/// Lag of the current of one joint alone [s]; 0: no lag is clear. One joint must show the lag more clearly than most
-/// joints of an arm together.
+/// Lag of the current of a single joint [s]; 0: no clear lag. A single joint must show its lag more clearly.
 double ownLag(const std::array<double, CurrentLag::LAGS>& left);
 }  // namespace hjt

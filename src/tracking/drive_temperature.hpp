@@ -15,11 +15,11 @@
 
 namespace hjt
 {
-/// Values with the times from which they are valid, kept for rows that come later. Nothing allocates.
+/// Keeps values with the times from which they hold, for rows that come later. Nothing allocates.
 class HeldValues
 {
 public:
-  static constexpr std::size_t ROOM = 512;  ///< number of values that are kept
+  static constexpr std::size_t ROOM = 512;  ///< largest number of values that are kept
 
   void push(double time, double value) noexcept
   {
@@ -27,7 +27,8 @@ public:
     ++end_;
   }
 
-  /// The last pushed value that is not later than `time` and not older than `max_age`, or nothing. Times in [s].
+  /// The last value whose time is not later than `time` [s] and that is not older than `max_age` [s]; none: there is no
+  /// such value.
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
     for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)
@@ -43,11 +44,11 @@ public:
 
   void clear() noexcept { begin_ = end_; }
 
-  /// Marks the values that were pushed so far: their rows were received.
+  /// Marks all values so far as values of rows that were received.
   void mark() noexcept { marked_ = end_; }
 
-  /// Call it when the time of the rows jumps back. Forgets the values up to the mark, and those after it up to the
-  /// first one whose time is before `earliest`: from that one on the values belong to rows to come.
+  /// Call this function when the time of the rows jumps back. It forgets the values up to the mark. It also forgets
+  /// later values up to the first one before `earliest` [s], because the values from there on belong to rows to come.
   void jumpBack(double earliest) noexcept
   {
     begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
@@ -70,20 +71,21 @@ private:
   std::uint64_t end_{};
 };
 
-/// Received temperatures of one drive. Impossible temperatures are counted and left out. Nothing allocates.
+/// Received temperatures of one drive. The class counts impossible temperatures and does not use them. Nothing
+/// allocates.
 class TemperatureRecord
 {
 public:
-  /// Temperatures older than this are not used [s]. The joints of a UR warm up with a time constant of some 1600 s at
-  /// least: in this time by 4 % of the whole rise, which is 1 K or less.
+  /// Largest age of a temperature that is used [s]. The joints of a UR warm up with a time constant of some 1600 s at
+  /// least. So in 60 s they warm up by 4 % of the whole rise, which is 1 K or less.
   static constexpr double MAX_AGE = 60.0;
   static constexpr double LOWEST = -20.0;  ///< [degC]
   static constexpr double HIGHEST = 120.0;
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// Keeps a temperature [degC] of a time [s], which may count from any zero. Refuses a temperature outside LOWEST ...
-  /// HIGHEST, and numbers that are not finite.
+  /// Keeps a temperature [degC] of a time [s] with any zero. Refuses numbers that are not finite, and temperatures
+  /// outside of LOWEST ... HIGHEST.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))
@@ -96,7 +98,7 @@ public:
     }
   }
 
-  /// The latest temperature that is not later than `time` and not older than MAX_AGE; NaN: there is none [degC].
+  /// The latest temperature that is not later than `time` and not older than MAX_AGE [degC]; NaN: there is none.
   double at(double time) const noexcept
   {
     return values_.at(time, MAX_AGE).value_or(std::numeric_limits<double>::quiet_NaN());
@@ -113,12 +115,11 @@ private:
   std::uint64_t refused_{};
 };
 
-/// Temperature of the grease of a measured joint, from the losses of its motion.
+/// Temperature of the grease of a measured joint, by the losses in its motion.
 ///
-/// With thermal.model = none the grease has the temperature of the sample, or else the configured one. With two_nodes a
-/// measured temperature is that of the housing, beside the motor, and the grease warms up above it. Where no
-/// temperature is measured, both nodes warm up above surroundings of input.temperature. The model assumes that the
-/// joint stands during a gap. Nothing allocates.
+/// With thermal.model = none the grease has the temperature of the sample, otherwise the configured one. With two_nodes
+/// a measured temperature is that of the housing near the motor, and the grease is warmer. If no temperature is
+/// measured, both nodes warm up above input.temperature. During a gap the joint is assumed to stand. Nothing allocates.
 class GreaseTemperature
 {
 public:
@@ -131,7 +132,7 @@ public:
   {
   }
 
-  /// Temperature of the grease at a sample, by the losses that were booked before [degC].
+  /// Temperature of the grease at a sample, by the losses before it [degC].
   double at(const MotionSample& sample) noexcept
   {
     if (!on_)
@@ -169,15 +170,14 @@ public:
     return std::clamp(heat_.grease(), MIN_TEMPERATURE, MAX_TEMPERATURE);
   }
 
-  /// Sets the losses from this sample to the next: speed of the joint [rad/s], friction at the joint and torque of the
-  /// motor [N.m].
+  /// Sets the losses until the next sample: speed of the joint [rad/s], friction at the joint and motor torque [N.m].
   void book(double velocity, double friction_torque, double motor_torque) noexcept
   {
     friction_power_ = std::abs(friction_torque * velocity);
     copper_power_ = copper_loss_ * motor_torque * motor_torque;
   }
 
-  /// Temperature of the housing with two nodes, else that of the grease [degC].
+  /// Temperature of the housing in the model two_nodes, otherwise that of the grease [degC].
   double housing(double grease) const noexcept { return on_ ? heat_.housing() : grease; }
 
 private:
@@ -188,8 +188,8 @@ private:
   bool on_;
   bool started_{};
   double last_{};             // time of the last sample [s]
-  double elapsed_{};          // since the nodes were last advanced [s]
-  DriveHeat::Losses losses_;  // meanwhile
+  double elapsed_{};          // time since the last step of the nodes [s]
+  DriveHeat::Losses losses_;  // losses since the last step of the nodes
   double friction_power_{};   // [W]
   double copper_power_{};     // [W]
 };

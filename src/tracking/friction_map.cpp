@@ -18,12 +18,12 @@ namespace hjt
 namespace
 {
 constexpr int POSITIONS = 8;  // number of positions over a tooth pitch
-// The speeds have equal distances in their logarithm.
+// The logarithms of the speeds have equal distances.
 constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
-// Shares of the largest load.
+// Loads as shares of the largest load of the table.
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
 
-/// Largest load that the motor can hold, or the load limit of a joint without a motor [N.m].
+/// Largest load that the motor can hold; for a joint without a motor the load limit [N.m].
 double largestLoad(const Parameters& parameters)
 {
   const double largest = parameters.motor.torque_limit > 0.0 ?
@@ -38,13 +38,13 @@ double largestLoad(const Parameters& parameters)
   return largest;
 }
 
-/// Table of a drive without errors of manufacture. Joints of one arm have equal drives, so known tables are kept.
+/// Table of a drive without errors of manufacture. Tables are kept, because joints of one arm have equal drives.
 const std::vector<LossRow>& lossesOf(Parameters parameters, const std::vector<double>& loads)
 {
   parameters.joint = {};
-  parameters.telemetry = {};  // the telemetry is not a property of the drive
+  parameters.telemetry = {};  // the telemetry has no effect on the friction
   parameters.comparison = {};
-  constexpr std::size_t MOST = 64;  // a fit needs tables of ever new drives
+  constexpr std::size_t MOST = 64;  // largest number of kept tables, because a fit makes ever new drives
   thread_local std::map<std::uint64_t, std::vector<LossRow>> known;
   if (known.size() >= MOST)
   {
@@ -82,7 +82,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
     if (!row.status.ok() && row.load_torque > parameters.output.load_torque_limit && lines_.size() > 2)
     {
       lines_.resize(i / SPEEDS);
-      break;  // the motor can hold a larger load than the gear
+      break;  // the gear cannot bear a load that the motor can hold
     }
     if (!row.status.ok())
     {

@@ -10,47 +10,45 @@
 
 namespace hjt
 {
-/// Friction of the joint in steady motion, each share as a torque at the motor shaft, >= 0 [N.m].
+/// Shares of the joint's friction in steady motion, each as a torque at the motor shaft, >= 0 [N.m].
 struct FrictionShares
 {
-  double preload{};  ///< bearing: balls loaded by their own outer race; proportional to bearing.race_preload
-  double grease{};   ///< bearing: by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power of 2/3
-  double flanks{};   ///< tooth flanks; proportional to mesh.friction_static and _kinetic together
-  double rest{};     ///< bearing under the wave generator's load, outer race, rim, cup, Coulomb torque of motor, output
+  double preload{};  ///< friction of balls loaded by their own outer race; proportional to bearing.race_preload
+  double grease{};   ///< bearing, by speed; above 2000 mm^2/s rpm proportional to bearing.viscosity to the power of 2/3
+  double flanks{};   ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
+  double rest{};  ///< bearing by the wave generator's load, outer race, rim, cup, Coulomb friction of motor and output
   double stribeck{};  ///< rise at the motor shaft towards standstill; proportional to motor.stribeck_torque
-  double viscous{};   ///< motor and output, proportional to the speed
+  double viscous{};   ///< friction of motor and output proportional to the speed
 
   double sum() const noexcept { return preload + grease + flanks + rest + stribeck + viscous; }
 };
 
-/// Table of the twin's friction over speed and load. The full ring makes the table once, so that a motion of hours
-/// costs seconds.
+/// Table of the twin's friction over speed and load. The full ring makes the table once, so that the twin can follow a
+/// motion of hours in seconds.
 ///
-/// The table leaves out errors of manufacture: they change the ripple of the friction over a tooth pitch, not its mean.
+/// The table has no errors of manufacture. They change the ripple of the friction over a tooth pitch, not its mean.
 class FrictionMap
 {
 public:
-  /// The table covers loads up to what the motor can hold, or with motor.torque_limit = 0 up to
-  /// output.load_torque_limit. It takes some ten milliseconds. Beyond output.load_torque_limit the table ends where the
-  /// ring finds no equilibrium.
+  /// Makes the table in some ten milliseconds. It covers loads up to what the motor can hold; if motor.torque_limit is
+  /// 0, up to output.load_torque_limit. Beyond output.load_torque_limit it ends where the ring finds no equilibrium.
   /// @throws ParameterError if both limits are 0 or the ring finds no equilibrium under a smaller load.
   explicit FrictionMap(const Parameters& parameters);
 
-  /// Friction at motor speed [rad/s], output load [N.m] and temperature [degC]. A load beyond the table counts as the
-  /// largest load of the table.
+  /// Friction at a motor speed [rad/s], output load [N.m] and temperature [degC]. The largest load of the table stands
+  /// for larger loads.
   FrictionShares at(double motor_speed, double load, double temperature) const noexcept
   {
     return atViscosity(motor_speed, load, viscosity(temperature));
   }
 
-  /// Friction where the viscosity [m^2/s] is known. The viscosity takes most of the time, and the temperature hardly
-  /// changes from call to call.
+  /// Friction at a known viscosity [m^2/s]. The viscosity takes most of the time and hardly changes from call to call.
   FrictionShares atViscosity(double motor_speed, double load, double viscosity) const noexcept;
   double viscosity(double temperature) const noexcept { return bearing_.viscosity(temperature); }
 
 private:
   static constexpr std::size_t SPEEDS = 7;
-  struct Line  // at one load
+  struct Line  // friction at one load
   {
     double load;                        // load at the output [N.m]
     double rest;                        // [N.m]
@@ -60,7 +58,7 @@ private:
   BearingFriction bearing_;
   Motor motor_;
   double race_preload_;    // bearing.race_preload [N]
-  double viscous_;         // friction per speed of motor and output, at the motor shaft [N.m.s/rad]
+  double viscous_;         // viscous friction of motor and output at the motor shaft, per speed [N.m.s/rad]
   double preload_torque_;  // [N.m]
   std::vector<Line> lines_;
 };

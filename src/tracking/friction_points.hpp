@@ -15,28 +15,28 @@
 
 namespace hjt
 {
-/// Mean friction of the rows at one speed, at the joint and against the motion.
+/// Mean friction of the rows at one speed, at the joint; > 0 against the motion.
 struct FrictionPoint
 {
-  double speed{};      ///< speed with its sign [rad/s]
+  double speed{};      ///< speed, > 0 in positive direction [rad/s]
   double measured{};   ///< measured friction [N.m]
   double deviation{};  ///< standard deviation of the measured rows [N.m]
-  double twin{};       ///< friction of the twin in the same rows [N.m]
+  double twin{};       ///< mean friction of the twin in the same rows [N.m]
   std::uint64_t rows{};
-  double load{};  ///< load with its sign [N.m]
+  double load{};  ///< mean load, > 0 resists positive motion [N.m]
 };
 
-/// Measured friction over that of a reference.
+/// Measured friction over the friction of a reference.
 struct FrictionRatio
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: joint and reference have no speed in common
-  double deviation{};                                        ///< standard deviation, by the scatter of the rows [-]
-  double of_points{};                 ///< standard deviation by leaving out one speed after the other [-]
-  std::vector<FrictionPoint> points;  ///< at the speeds that both have; `twin` is the friction of the reference
+  double deviation{};                 ///< standard deviation of `value` by the scatter of the rows [-]
+  double of_points{};                 ///< standard deviation of `value` by leaving out one speed after the other [-]
+  std::vector<FrictionPoint> points;  ///< points at the speeds of both; `twin` holds the friction of the reference
 };
 
-/// Rows of friction by blocks of time. Rows that follow each other are not independent, so the scatter of a ratio
-/// follows from the scatter of its blocks.
+/// Sums of friction in blocks of time. The blocks show the scatter of a ratio, because successive rows are not
+/// independent.
 class FrictionBlocks
 {
 public:
@@ -59,8 +59,8 @@ public:
   std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
 
   /// Standard deviation of FrictionPoints::ratio by the scatter of the blocks, as a share of the ratio. Each block adds
-  /// the square of its part of the numerator less the ratio times its part of the denominator. Infinity: fewer than
-  /// three blocks.
+  /// the square of its part of the numerator - the ratio times its part of the denominator. Infinite: fewer than three
+  /// blocks.
   double deviation() const
   {
     FrictionBlocks all = *this;
@@ -93,7 +93,7 @@ public:
 
 private:
   static constexpr std::uint64_t MIN_BLOCKS = 3;
-  // Unaligned, so that a class with this member needs no operator new of its own.
+  // Without alignment, so that a class with this member needs no operator new of its own.
   using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
   using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
@@ -109,21 +109,21 @@ private:
   }
 
   double place_{ -std::numeric_limits<double>::infinity() };
-  Vector6 open_{ Vector6::Zero() };  // rows, measured, twin: backward and forward each
+  Vector6 open_{ Vector6::Zero() };  // for each direction: number of rows, measured friction, twin's friction
   Vector6 sums_{ Vector6::Zero() };
   Matrix6 products_{ Matrix6::Zero() };
   std::uint64_t blocks_{};
 };
 
-/// Friction of any number of rows by speed, with each direction of motion apart.
+/// Mean friction by speed, from any number of rows. Both directions of motion are separate.
 class FrictionPoints
 {
 public:
   static constexpr std::uint64_t MIN_ROWS = 30;  ///< fewer rows make no point
-  static constexpr double SLOWEST = 0.01;        ///< slower rows do not count [rad/s]
+  static constexpr double SLOWEST = 0.01;        ///< rows with slower motion do not count [rad/s]
 
-  /// `time` [s]; `speed` with its sign [rad/s]; friction at the joint, against the motion > 0 [N.m]; `load` with its
-  /// sign [N.m].
+  /// Adds a row. `time` [s]; `speed` [rad/s] and `load` [N.m] with sign; `measured`, `twin`: friction, > 0 against the
+  /// motion [N.m].
   void add(double time, double speed, double measured, double twin, double load)
   {
     const double place = placeOf(speed);
@@ -142,7 +142,7 @@ public:
     blocks_.add(time, speed > 0.0, measured, twin);
   }
 
-  /// Points in the order of their speeds.
+  /// Points in the order of their speeds, from the fastest negative speed on.
   std::vector<FrictionPoint> points() const
   {
     std::vector<FrictionPoint> points;
@@ -161,20 +161,21 @@ public:
 
   const FrictionBlocks& blocks() const { return blocks_; }
 
-  /// Measured friction over the twin's, by the rows of all points. Both directions count alike, so that a wrong load
-  /// cancels out. The deviation is the larger of two: by the blocks, and by leaving out one point after the other.
+  /// Measured friction over the twin's, by the rows of all points. Both directions have equal weight, so that a wrong
+  /// load has no effect. The deviation is the larger of that by the blocks and that by leaving out one point after the
+  /// other.
   FrictionRatio ratio() const { return ratio(points()); }
 
-  /// Measured friction over that of `reference`, at the speeds that both have: the twin's friction need not rise with
-  /// the speed as the joint's does.
+  /// Measured friction over that of `reference`, at the speeds of both, because the twin's friction may rise with the
+  /// speed in another way than the joint's does.
   FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
   {
     return ratio(common(points(), reference));
   }
 
-  /// Those `points` whose speed `reference` has too. Their `twin` becomes the friction of the reference: it is
-  /// multiplied by the reference's measured friction over its twin's, the mean over the reference's points less than a
-  /// bin away, weighted by rows and nearness.
+  /// Returns the `points` whose speeds `reference` has too. Their `twin` becomes the friction of the reference: it is
+  /// multiplied by the reference's measured friction over its twin's. This factor is the mean over the reference's
+  /// points less than a bin away, weighted by rows and nearness.
   static std::vector<FrictionPoint> common(const std::vector<FrictionPoint>& points,
                                            const std::vector<FrictionPoint>& reference)
   {
@@ -202,11 +203,11 @@ public:
     return common;
   }
 
-  /// Means of the points in one bin of speed, weighted by their rows, in the order of their speeds.
+  /// Means of the points in each bin of speed, weighted by their rows, in the order of their speeds.
   static std::vector<FrictionPoint> merged(const std::vector<FrictionPoint>& points)
   {
     std::map<double, std::vector<FrictionPoint>>
-        at;  // points by the number of the bin from standstill, which has the sign of the speed
+        at;  // points by the number of their bin, counted from standstill with the sign of the speed
     for (const FrictionPoint& point : points)
     {
       at[std::copysign(std::floor(placeOf(point.speed)) + 1.0, point.speed)].push_back(point);
@@ -219,7 +220,7 @@ public:
     return merged;
   }
 
-  /// Measured friction over the twin's; both directions count alike. NaN: no point.
+  /// Measured friction over the twin's, with equal weight of both directions; NaN: there is no point.
   static double ratioOf(const std::vector<FrictionPoint>& points)
   {
     const FrictionPoint backward = meanOf(points, -1.0);
@@ -228,7 +229,7 @@ public:
     return twin > 0.0 ? (backward.measured + forward.measured) / twin : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Mean of the points of one direction, +1 or -1, weighted by their rows.
+  /// Mean of all points of one direction, +1 or -1, weighted by their rows.
   static FrictionPoint meanOf(const std::vector<FrictionPoint>& points, double way)
   {
     FrictionPoint mean;
@@ -259,7 +260,7 @@ private:
     return found;
   }
 
-  /// Standard deviation of the ratio by leaving out one point after the other; 0: fewer than two points.
+  /// Standard deviation of the ratio by leaving out one point after the other; 0: there are fewer than two points.
   static double jackknife(const std::vector<FrictionPoint>& points)
   {
     double sum = 0.0;
@@ -288,9 +289,9 @@ private:
     double load{};
   };
   static constexpr double BINS_PER_DECADE = 10.0;
-  static constexpr std::size_t BINS = 30;  // number of bins in each direction, up to 10 rad/s
+  static constexpr std::size_t BINS = 30;  // number of bins of each direction, up to 10 rad/s
 
-  std::array<Bin, 2 * BINS> bins_{};  // from the fastest backward to the fastest forward
+  std::array<Bin, 2 * BINS> bins_{};  // from the fastest negative speed to the fastest positive one
   FrictionBlocks blocks_;
 };
 }  // namespace hjt

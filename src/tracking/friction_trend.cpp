@@ -12,7 +12,8 @@ namespace hjt
 {
 namespace
 {
-/// Standard deviation of a joint's response to the common factors, less that of the other joints [-].
+/// Prior standard deviation of the ratio of a joint's response to common factors, to the response of the other joints
+/// [-].
 constexpr double OTHER_ANSWER = 0.5;
 
 double weightOf(const DatedFriction& recording)
@@ -20,7 +21,7 @@ double weightOf(const DatedFriction& recording)
   return 1.0 / (recording.deviation * recording.deviation);
 }
 
-/// Time, common friction and logarithm of the factor, less their weighted means, a row for each recording.
+/// Time, common friction and logarithm of the factor - their weighted means. Each row is a recording.
 Eigen::MatrixX3d aboutMeans(const std::vector<DatedFriction>& recordings)
 {
   Eigen::MatrixX3d rows(static_cast<Eigen::Index>(recordings.size()), 3);
@@ -67,8 +68,8 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
   const Eigen::Matrix2d inverse = normal.inverse();
   const Eigen::Vector2d line = inverse * right;
   trend.slope = line[0];
-  double left = 0.0;  // squares of the residuals over the squares of the deviations
-  double fast = 0.0;  // variance of the slope
+  double left = 0.0;  // sum of the squared residuals over the squared deviations [-]
+  double fast = 0.0;  // variance of the slope by the parts of the deviations that change quickly
   double slow = 0.0;
   for (std::size_t i = 0; i < recordings.size(); ++i)
   {
@@ -80,7 +81,8 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
     const double rest = rows(static_cast<Eigen::Index>(i), 2) - line.dot(at);
     left += std::pow(rest / recording.deviation, 2);
   }
-  // Of the recordings, less mean and slope, and the answer as far as they and not what is known of it fit it.
+  // Degrees of freedom: the recordings, less mean and slope, less the part of the response that the recordings
+  // determine.
   const double of_known_answer = inverse(1, 1) / (OTHER_ANSWER * OTHER_ANSWER);
   const double freedom = static_cast<double>(trend.recordings - 3) + of_known_answer;
   const double scatter = std::max(1.0, left / freedom);

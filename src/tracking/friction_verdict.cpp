@@ -15,31 +15,31 @@ namespace hjt
 {
 namespace
 {
-/// Standard deviation of a sound drive's friction from one recording to the next, apart from the joints' common factor:
-/// a share [-], and a torque that counts in small drives [N.m].
+/// Standard deviation of a sound drive's friction from one recording to the next, apart from the joints' common factor.
+/// It has two parts: a share [-], and a torque, which counts in small drives [N.m].
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
-/// The same standard deviation if the joints of the group confirm their common factor.
+/// The same standard deviation, for joints whose group confirms the common factor.
 constexpr double WITNESSED_SHARE = 0.025;
 constexpr double WITNESSED_TORQUE = 0.1;
 
-/// Standard deviation of the load as a share: 2 % by the masses of the links and 5 % by the gain [-].
+/// Standard deviation of the load, as a share: 2 % by the masses of the links and 5 % by the gain [-].
 constexpr double LOAD_SHARE = 0.054;
 
 /// Standard deviation of the friction that a controller expects of a sound joint, as a share [-].
 constexpr double CONTROLLER_SHARE = 0.05;
 
-/// No fault of severity 1 leaves a smaller share of the friction [-].
+/// Least share of the friction that a fault of severity 1 leaves [-].
 constexpr double LEAST_OF_FAULTS = 0.5;
 
-/// A smaller factor counts as no friction [-].
+/// Friction factor below which a joint has no friction [-].
 constexpr double NO_FRICTION = 0.1;
 
-/// Half width of the logarithm's interval, beyond which a factor tells too little: it is then known to a half only [-].
+/// Largest half width of the interval of the factor's logarithm; with a wider interval the factor tells too little [-].
 constexpr double WIDEST = 0.4;
 
-/// No change of temperature changes the friction by a larger factor [-].
+/// Largest factor by which a change of temperature changes the friction [-].
 constexpr double MAX_ARM_FRICTION = 2.5;
 
 constexpr std::size_t MIN_POINTS = 3;
@@ -47,8 +47,8 @@ constexpr std::size_t MIN_POINTS = 3;
 struct ReferenceRow
 {
   const char* name;
-  const char* text;  // name of the reference in sentences
-  Figure figure;     // friction as a multiple of this reference
+  const char* text;  // the reference in a sentence
+  Figure figure;     // figure for the friction as a multiple of this reference
 };
 
 /// The references, in the order of FrictionReference.
@@ -58,8 +58,7 @@ constexpr std::array<ReferenceRow, 3> REFERENCES{
     { "own", "this joint's own when it was sound", Figure::FRICTION_OF_OWN } }
 };
 
-/// Direction of motion, +1 or -1, in which the mean friction pushes the joint along, which no drive does. 0: in
-/// neither.
+/// Direction of motion, +1 or -1, in which the mean friction would push the joint along, which no drive does. 0: none.
 double impossibleWay(const std::vector<FrictionPoint>& points)
 {
   for (const double way : { -1.0, 1.0 })
@@ -74,7 +73,7 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
 
 using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
 
-/// Why the points do not show a factor of the friction.
+/// Says why the points do not show a friction factor.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
@@ -112,7 +111,7 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   return { Reason::SOUND, "" };
 }
 
-/// Why a factor cannot be that of a drive.
+/// Says why no drive can have this friction factor.
 Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
@@ -149,16 +148,15 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   return { Reason::SOUND, "" };
 }
 
-/// The joint's own rows do not show its friction, but the fit of all joints' currents may.
+/// Whether the joint's own rows do not show its friction, although the fit of all joints' currents may show it.
 bool isUnshown(Reason reason)
 {
   return reason == Reason::NO_STEADY_MOTION || reason == Reason::NO_REFERENCE || reason == Reason::ONE_DIRECTION ||
          reason == Reason::ONE_SPEED || reason == Reason::TOO_SHORT || reason == Reason::FRICTION_SCATTER;
 }
 
-/// Standard deviation of the ratio to the mean of the reference's recordings, as a share. `stated`: prior value of that
-/// between two recordings. It counts like STATED_COUNT recordings beside the differences between those of the
-/// reference.
+/// Standard deviation of the ratio to the mean of the reference's recordings, as a share [-]. `stated`: prior value of
+/// the standard deviation of the ratio of two recordings. It has the weight of STATED_COUNT recordings.
 double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;
@@ -169,17 +167,17 @@ double repeatDeviation(double stated, const OwnReference& own)
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
-/// Standard deviation of the friction over the joint's own earlier friction by the scatter of the rows, as a share. It
-/// is the larger of two: by leaving out one speed after the other, and by the blocks of both recordings. Half of the
-/// blocks' variance counts. The other half comes from the twin, whose friction does not rise with the speed as the
-/// joint's does, and both recordings share it.
+/// Standard deviation of the ratio to the joint's own earlier friction by the scatter of the rows, as a share [-]. It
+/// is the larger of two: by leaving out one speed after the other, and by the blocks of both recordings. Only half of
+/// the blocks' variance counts. The other half comes from the twin, whose friction rises with the speed in another way
+/// than the joint's, and is alike in both recordings.
 double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
 {
   const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);
   return std::max(ratio.of_points / std::max(std::abs(ratio.value), NO_FRICTION), of_blocks);
 }
 
-/// Standard deviation of the factor's logarithm by all that makes it uncertain.
+/// Standard deviation of the factor's logarithm by all its sources of uncertainty.
 double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, const JointContext& context,
                    FrictionReference reference)
 {
@@ -198,8 +196,8 @@ double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, con
                    context.arm_deviation * context.arm_deviation);
 }
 
-/// Distance of the factor from 1 over the distance at which its whole interval lies beyond the bound. Beyond 1 the
-/// friction departs.
+/// Distance of the factor from 1, over the distance at which its whole interval would lie beyond the bound. If the
+/// result is larger than 1, the friction departs.
 double departure(const FrictionFactor& factor, double arm_friction, double more, double less)
 {
   const double distance = factor.value / arm_friction - 1.0;
@@ -286,7 +284,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
 
 namespace
 {
-/// Sentences on the friction. `verdict`: with the friction and its bounds.
+/// Sentences on the friction. `verdict` already holds the friction and its bounds.
 std::string frictionText(const FrictionFactor& factor, bool is_fitted, const JointEvidence& evidence,
                          const JointContext& context, const Finding& finding, const Verdict& verdict)
 {
@@ -322,7 +320,7 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
 
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding)
 {
-  constexpr double MIN_CHANGE = 0.02;  // share by which a fault of severity 1 must change it to be named
+  constexpr double MIN_CHANGE = 0.02;  // least change, as a share, by a fault of severity 1 that is named
   for (const Cause cause : causesThatMove(evidence.assessor().signatures(), indicator, way, MIN_CHANGE))
   {
     finding.causes.push_back({ cause, 0.0 });
@@ -339,7 +337,7 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   finding.subject = FindingSubject::FRICTION;
   const FrictionFactor factor = frictionFactor(evidence, context);
   const double of_kind = evidence.parameters().comparison.friction_tolerance;
-  // The fit does not count for a joint without its own reference if others of the arm have theirs.
+  // A joint without its own reference, in an arm whose other joints have theirs, does not use the fit.
   const FittedFriction fitted = context.own.is_unjudged ? FittedFriction() : context.fitted;
   bool is_fitted = isUnshown(factor.reason) && (fitted.departs() || fitted.isWithin(of_kind));
   verdict.friction_text = factor.why_not;

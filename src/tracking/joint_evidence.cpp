@@ -87,7 +87,7 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
 }
 
-/// Adds a row to the reach. Returns the time since the row before [s]; 0 for the first row and after a gap.
+/// Adds a row to the reach. Returns the time since the row before [s]; 0: first row, or first row after a gap.
 double JointEvidence::addToReach(const MotionSample& sample) noexcept
 {
   MotionReach& reach = now_.reach;
@@ -110,7 +110,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-/// Rows shortly after a contact count too, because with a wrong gain the load of the joint has the effect of a contact.
+/// Rows shortly after a contact count too, because a load with a wrong gain has the effect of a contact.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
   if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())

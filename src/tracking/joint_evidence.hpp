@@ -29,16 +29,16 @@
 
 namespace hjt
 {
-/// Mean torsion of the rows at one joint torque, with each direction of turning apart.
+/// Mean torsion of the rows at one torque of the joint, for each direction of turning.
 struct TorsionMean
 {
   double torque{};    ///< torque at the joint [N.m]
-  double forward{};   ///< mean torsion while turning forward; NaN: the joint never did under this torque [rad]
-  double backward{};  ///< mean torsion while turning backward; NaN: the joint never did under this torque [rad]
+  double forward{};   ///< mean torsion while turning forward; NaN: the joint never did so under this torque [rad]
+  double backward{};  ///< mean torsion while turning backward; NaN: the joint never did so under this torque [rad]
 };
 
-/// Torsion of a joint with two encoders beside the torsion of the twin under the same course of loads, for torques up
-/// to output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
+/// Torsion of a joint with two encoders, and torsion of its twin under the same loads, for torques up to
+/// output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
 class TorsionPoints
 {
 public:
@@ -53,8 +53,8 @@ public:
     bins_ = {};
   }
 
-  /// `torque`: at the output [N.m]. `twin`: torsion of the twin under that torque [rad]. `torsion`: motor angle over
-  /// ratio less joint angle, from any zero [rad]. `position`: of the joint [rad]. `speed`: of the joint [rad/s].
+  /// Adds a row. `torque`: torque at the output [N.m]. `twin`: torsion of the twin [rad]. `torsion`: motor angle /
+  /// ratio - joint angle, with any zero [rad]. `position`, `speed`: those of the joint [rad], [rad/s].
   void add(double torque, double twin, double torsion, double position, double speed) noexcept
   {
     Eigen::Matrix<double, SINE + 1, 1> row;
@@ -67,7 +67,7 @@ public:
 
   std::uint64_t rows() const { return static_cast<std::uint64_t>(regression_.rows()); }
 
-  /// Means in the order of their torques. The zero of the torsion is that of the twin's curve.
+  /// Mean torsions in the order of their torques, with the zero of the twin's torsion.
   std::vector<TorsionMean> means() const
   {
     std::vector<TorsionMean> means;
@@ -84,30 +84,32 @@ public:
     return means;
   }
 
-  /// Measured torsion over the twin's under the same torques, by least squares with an offset for each direction of
-  /// turning; NaN if the torque hardly varied.
+  /// Measured torsion over the twin's under the same torques, by least squares with one offset for each direction of
+  /// turning [-]; NaN: the torque hardly varied.
   double compliance() const
   {
     return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(TWIN, 0);
   }
 
-  /// Standard deviation of the twin's torsion under the same torques [rad]
+  /// Standard deviation of the twin's torsion over the rows [rad].
   double twinAmplitude() const { return std::sqrt(std::max(0.0, covariance(TWIN, TWIN))); }
 
-  /// Standard deviation of a sine of the joint angle with amplitude 1, the largest over all phases [-].
+  /// Standard deviation over the rows of a sine of the joint angle with amplitude 1, for the phase that makes it
+  /// largest [-].
   double turnAmplitude() const
   {
     const double cosines = covariance(COSINE, COSINE);
     const double sines = covariance(SINE, SINE);
-    // The root of the larger eigenvalue.
+    // The square root of the larger eigenvalue of the covariance matrix.
     return std::sqrt(0.5 * (cosines + sines) + std::hypot(0.5 * (cosines - sines), covariance(COSINE, SINE)));
   }
 
 private:
-  static constexpr int STEPS = 142;            // up to the largest load
+  static constexpr int STEPS = 142;            // number of steps up to the largest load
   static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
                                                // estimate [rad]
-  // Columns beside the constant and the direction of turning. Those of the joint angle take no part in the fit.
+  // Columns of the regression. Column 0 is a constant, column 1 the direction of turning. The fit leaves out COSINE and
+  // SINE.
   static constexpr int TWIN = 2;
   static constexpr int COSINE = 3;
   static constexpr int SINE = 4;
@@ -129,9 +131,9 @@ private:
     return regression_.mean(column, other) - regression_.mean(column, 0) * regression_.mean(other, 0);
   }
 
-  double step_;  // of the torque [N.m]
+  double step_;  // width of a step of the torque [N.m]
   RunningRegression regression_;
-  std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by way of turning: torques from the least to the largest
+  std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by direction of turning, from the least torque on
 };
 
 /// Health of a measured joint from its own signals. After construction nothing allocates or throws.
@@ -142,16 +144,15 @@ public:
     : telemetry_(parameters.telemetry)
     , ratio_(nominalRatio(parameters.gear))
     , temperature_(parameters.input.temperature)
-    , monitor_(withoutWeight(parameters))  // the load of a sample holds the weight
+    , monitor_(withoutWeight(parameters))  // the load of a sample contains the weight
     , assessor_(parameters)
   {
   }
 
-  /// Sets the reference that the joint is compared with; without this call the first windows are the reference.
+  /// Sets the reference of the sound joint. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins) { assessor_.setReference(std::move(bins)); }
 
-  /// `sample`: its load includes weight and inertia. True: this sample completed a window, which indicators and
-  /// assessor now show.
+  /// Takes a sample whose load includes weight and inertia. Returns true if it completed a window of the indicators.
   bool update(const MotionSample& sample) noexcept
   {
     SignalSample signal;
@@ -182,43 +183,44 @@ public:
 private:
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;  // of samples without one [degC]
+  double temperature_;  // temperature for samples without a temperature [degC]
   SignalMonitor monitor_;
   Assessor assessor_;
 };
 
-/// A contact on a joint's side of the arm.
+/// A contact that the torque of a joint shows.
 struct Contact
 {
   double since{};    ///< time when the contact began [s]
-  double lasted{};   ///< duration without its pauses, each shorter than ContactWatch::HOLD [s]
-  double largest{};  ///< largest torque at the joint beyond the usual one, magnitude [N.m]
+  double lasted{};   ///< duration of the contact without its pauses, which are shorter than ContactWatch::HOLD [s]
+  double largest{};  ///< largest magnitude of the torque at the joint above the usual torque [N.m]
 };
 
-/// Detects that something touches the arm: while the joint moves, the motion takes for a short time a torque that it
-/// does not usually take. A torque that stays becomes the usual one. Torques that differ for more than a fifth of the
-/// time are no contact: friction, gain or payload are the reason.
+/// Detects that something touches the arm: the motion of a joint takes for a short time a torque that it does not
+/// usually take. A torque that persists becomes the usual torque. If the torque is unusual for more than a fifth of the
+/// time, the reason is friction, gain or payload, and not a contact.
 ///
-/// The mean residual over MEAN must differ from the usual residual of that direction for LASTING. The difference must
-/// be more than half of the friction, 5 % of the load and 2 % of the largest load together. Where rows come rarely, the
-/// window of their rates smears a jolt, and LASTING is longer by that. Memory is fixed; nothing allocates or throws.
+/// The mean residual over MEAN must differ from the usual residual of the direction of motion for LASTING. The
+/// difference must exceed the sum of half of the friction, 5 % of the load and 2 % of the largest load. If rows come
+/// rarely, the window of their rates spreads a jolt, and LASTING is longer by this spread. Memory is fixed; nothing
+/// allocates or throws.
 class ContactWatch
 {
 public:
   static constexpr double MEMORY = 10.0;  ///< time of motion in one direction over which the usual torque adapts [s]
-  static constexpr double HOLD = 10.0;    ///< time after a contact in which nothing is judged [s]
+  static constexpr double HOLD = 10.0;    ///< time after a contact in which the joint is not judged [s]
 
   explicit ContactWatch(double largest_load) : largest_load_(largest_load) {}  ///< [N.m]
 
   void reset() noexcept { *this = ContactWatch(largest_load_); }
 
-  /// `residual_torque`: measured less predicted torque at the joint [N.m]. `is_held`: stiction holds the joint.
+  /// `residual_torque`: measured - predicted torque at the joint [N.m]. `is_held`: whether stiction holds the joint.
   void update(const MotionSample& sample, double residual_torque, double friction_torque, bool is_held) noexcept
   {
     constexpr double MEAN = 0.1;     // time over which the residual is averaged [s]
-    constexpr double SETTLED = 0.3;  // motion in one direction after which presliding and start are over [s]
-    constexpr double LASTING = 0.1;  // least time for which the difference must last [s]
-    constexpr double KNOWN = 2.0;    // motion in one direction after which the usual torque is known [s]
+    constexpr double SETTLED = 0.3;  // time of motion in one direction after which presliding is over [s]
+    constexpr double LASTING = 0.1;  // least time for which the difference must persist [s]
+    constexpr double KNOWN = 2.0;    // time of motion in one direction after which the usual torque is known [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
@@ -232,7 +234,7 @@ public:
       moved_ = beyond_ = mean_ = 0.0;
       return;
     }
-    constexpr double ROWS = 4.0;  // fewest rows in the window of the rates
+    constexpr double ROWS = 4.0;  // least number of rows in the window of the rates
     const double smeared = std::max(0.0, ROWS * step - 2.0 * MotionDifferentiator::HALF_WIDTH);
     Usual& usual = usual_[way > 0 ? 1 : 0];
     const double bound =
@@ -261,11 +263,11 @@ public:
 
   bool hasSeen() const noexcept
   {
-    constexpr double OFTEN = 0.2;  // share of the motion from which on differences are no contact [-]
+    constexpr double OFTEN = 0.2;  // share of the motion from which on unusual torques are no contact [-]
     return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
-  bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< in the last row
-  /// A contact now, or less than HOLD ago.
+  bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< whether the last row shows a contact
+  /// Whether a contact lasts, or ended less than HOLD ago.
   bool isRecent() const noexcept { return hasSeen() && time_ - last_ < HOLD; }
   const Contact& last() const noexcept { return contact_; }     ///< the last contact
   const Contact& largest() const noexcept { return largest_; }  ///< the contact with the largest torque
@@ -279,18 +281,18 @@ private:
 
   double largest_load_;
   double time_{};
-  int way_{};                                                // +1, -1; 0: at rest
-  double moved_{};                                           // time of motion in that direction [s]
-  double mean_{};                                            // mean difference from the usual torque [N.m]
-  double beyond_{};                                          // time for which the mean is beyond the bound [s]
-  std::array<Usual, 2> usual_{};                             // by direction
-  double last_{ -std::numeric_limits<double>::infinity() };  // last time when something touched the arm [s]
+  int way_{};                     // +1, -1; 0: at rest
+  double moved_{};                // time of motion in the direction way_ [s]
+  double mean_{};                 // mean difference between residual and usual residual [N.m]
+  double beyond_{};               // time for which the mean difference has exceeded its bound [s]
+  std::array<Usual, 2> usual_{};  // by direction
+  double last_{ -std::numeric_limits<double>::infinity() };  // time of the last row that shows a contact [s]
   double touched_{};                                         // duration of all contacts [s]
   Contact contact_;
   Contact largest_;
 };
 
-/// A clause on a contact.
+/// A clause that describes a contact.
 inline std::string contactText(const Contact& contact)
 {
   return "something touched the arm, or its payload changed, at " + roundedText(contact.since, 3) + " s for " +
@@ -306,9 +308,9 @@ struct JudgedWindow
   Assessment assessment;
 };
 
-constexpr double LEAST_MOTION = 0.02;  ///< a joint whose angles differ by less is at rest [rad]
+constexpr double LEAST_MOTION = 0.02;  ///< least range of a joint's angles; with a smaller one it is at rest [rad]
 
-/// Coverage of the measured motion.
+/// Number of rows and ranges of the measured motion.
 struct MotionReach
 {
   bool isAtRest() const { return most_angle - least_angle < LEAST_MOTION; }
@@ -317,22 +319,22 @@ struct MotionReach
   std::uint64_t impossible{};        ///< rows with a current or load that the joint cannot have
   std::uint64_t motor_rows{};        ///< rows with a motor angle
   std::uint64_t temperature_rows{};  ///< rows with a received temperature
-  std::uint64_t touched_rows{};      ///< rows left out because of a contact now or less than ContactWatch::HOLD before
-  double begin{};                    ///< time of the first row [s]
-  double end{};                      ///< time of the last row [s]
-  double sampled{};                  ///< sum of the steps from row to row, without gaps [s]
-  double least_load{};               ///< least load [N.m]
-  double most_load{};                ///< largest load [N.m]
-  double least_angle{};              ///< least angle [rad]
-  double most_angle{};               ///< largest angle [rad]
+  std::uint64_t touched_rows{};  ///< rows that do not count, because of a contact less than ContactWatch::HOLD before
+  double begin{};                ///< time of the first row [s]
+  double end{};                  ///< time of the last row [s]
+  double sampled{};              ///< sum of the steps from row to row, without gaps [s]
+  double least_load{};           ///< least load [N.m]
+  double most_load{};            ///< largest load [N.m]
+  double least_angle{};          ///< least angle [rad]
+  double most_angle{};           ///< largest angle [rad]
 };
 
-/// Where the load of the samples comes from.
+/// Source of the load in the samples.
 enum class LoadOrigin
 {
-  CONFIGURED,  ///< from weight and inertia of the joint's parameters
+  CONFIGURED,  ///< weight and inertia by the joint's parameters
   RECORDED,
-  ARM  ///< from links and payload, by rigid-body dynamics
+  ARM  ///< links and payload, by rigid-body dynamics
 };
 
 /// The groups of a joint's parameters that evidence and verdict use.
@@ -357,96 +359,95 @@ struct EvidenceParameters
   TelemetryParameters telemetry;
   ComparisonParameters comparison;
   IndicatorParameters indicators;
-  double possible_current;  ///< largest current that the joint can have [A]
+  double possible_current;  ///< largest current that the joint can draw [A]
 };
 
-/// Collects the evidence on a measured joint: sums over its rows and over the twin's values in the same motion.
-/// `hjt::judge` makes a verdict of the evidence. Rows during a contact, and for ContactWatch::HOLD after the contact,
-/// do not count, unless the load is the configured one. Memory is fixed; after construction nothing allocates or
-/// throws.
+/// Collects the evidence on a measured joint: sums over its rows, and over the twin's values in the same motion.
+/// `hjt::judge` makes a verdict of the evidence. Rows during a contact, and for ContactWatch::HOLD after it, do not
+/// count, unless the load is the configured one. After construction nothing allocates or throws.
 class JointEvidence
 {
 public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   JointEvidence(const Parameters& parameters, LoadOrigin load);
 
-  /// Sets the signals' reference of the sound joint. Without this call the first windows are the reference.
+  /// Sets the reference of the signals from the sound joint. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins);
 
-  /// Result of a row.
+  /// Result of update() for a row.
   enum class Row
   {
-    IMPOSSIBLE,  ///< the joint cannot have such a current or load
-    TOUCHED,     ///< something touches the arm, or did less than ContactWatch::HOLD before
+    IMPOSSIBLE,  ///< the joint cannot have the current or the load of the row
+    TOUCHED,     ///< something touches the arm, or touched it less than ContactWatch::HOLD ago
     COUNTED,
-    WINDOW  ///< the row counts, and it completed a window of the signals
+    WINDOW  ///< the row counts and completed a window of the signals
   };
 
-  /// `sample`: its load includes weight and inertia. `fits`: whether the signals of this row count.
+  /// Takes a sample whose load includes weight and inertia. `fits`: whether its signals count.
   Row update(const MotionSample& sample, bool fits = true) noexcept
   {
     predict(sample);
     return judge(sample, fits);
   }
-  /// The function update in two steps: the twin makes the motion of every row, and rows with a known load are judged.
+  /// update() in two steps: predict() for every row, then judge() for rows with a known load.
   const MotionPrediction& predict(const MotionSample& sample) noexcept { return predicted_ = twin_.step(sample); }
   Row judge(const MotionSample& sample, bool fits) noexcept;
 
-  /// Clears the sums, but keeps the signals' reference and the state of contact.
+  /// Clears the sums, but keeps the reference of the signals and the state of the contact.
   void forget() noexcept;
-  /// Clears everything: rows of another recording follow.
+  /// Clears everything, because rows of another recording follow.
   void reset() noexcept;
-  /// Clears the signals alone.
+  /// Clears only the evidence on the signals.
   void resetSignals() noexcept { health_.reset(); }
 
   LoadOrigin loadOrigin() const { return load_; }
   const EvidenceParameters& parameters() const { return parameters_; }
   double ratio() const { return ratio_; }
   const MotionDriven& twin() const { return twin_; }
-  const MotionPrediction& predicted() const { return predicted_; }  ///< for the last row
+  const MotionPrediction& predicted() const { return predicted_; }  ///< prediction for the last row
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
-  /// Friction beside the friction that the arm's controller expects, which stands in `twin`: the current is then the
-  /// controller's target current. Only rows with a target current count.
+  /// Friction with FrictionPoint::twin as the friction that the arm's controller expects: the current is then its
+  /// target current. Only rows with a target current count.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return torsion_; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
   const Assessor& assessor() const { return health_.assessor(); }
   const ContactWatch& contact() const { return contact_; }
-  /// Something touches the arm, or did less than ContactWatch::HOLD ago.
+  /// Whether something touches the arm, or touched it less than ContactWatch::HOLD ago.
   bool isTouched() const { return load_ != LoadOrigin::CONFIGURED && contact_.isRecent(); }
 
   double currentRms() const { return rms(MEASURED); }     ///< root mean square of the measured current [A]
   double predictedRms() const { return rms(PREDICTED); }  ///< root mean square of the predicted current [A]
   double residualRms() const { return rms(RESIDUAL); }    ///< root mean square of the residual [A]
-  /// Standard deviation of the residual about its mean, so that an unknown constant load does not count [A].
+  /// Standard deviation of the residual. An unknown constant load does not change it [A].
   double residualSpread() const;
-  /// Residual less the best constant and the best multiple of the predicted friction, rms [A]. A constant load and worn
-  /// or cold grease then do not count.
+  /// Root mean square of the residual without the best constant and the best multiple of the predicted friction [A]. So
+  /// a constant load, wear and cold grease do not count.
   double unexplainedRms() const;
-  /// Measured over predicted current, of the part that load and inertia take, without friction. NaN: that part is too
-  /// small.
+  /// Measured over predicted current, for the part of load and inertia without friction; NaN: this part is too small
+  /// [-].
   FittedFactor loadFactor() const;
   double temperature() const;  ///< mean temperature of the rows [degC]
-  /// More than half of the rows had a received temperature.
+  /// Whether more than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * now_.reach.temperature_rows > now_.reach.rows; }
-  /// Mean friction of the twin at the speeds of friction(), under the typical load, at a temperature [degC], [N.m].
+  /// Mean friction of the twin at the speeds of friction() and the median load, at a temperature [degC], in [N.m].
   double twinFrictionAt(double temperature) const;
   double typicalLoad() const { return loadQuantile(0.5); }    ///< median of the load's magnitude [N.m]
-  double largestLoad() const { return loadQuantile(0.999); }  ///< one row in a thousand has a larger load [N.m]
+  double largestLoad() const { return loadQuantile(0.999); }  ///< load that one row in a thousand exceeds [N.m]
 
   bool baselineGiven() const { return baseline_given_; }
   std::uint64_t assessedWindows() const { return now_.assessed; }
-  /// The last of the windows at the worst level; none: no window was judged.
+  /// The last window at the worst level; none: no window was judged.
   const std::optional<JudgedWindow>& worst() const { return now_.worst; }
-  /// The last assessment that had too few windows for a verdict.
+  /// The last assessment with too few windows for a verdict; none: there is no such assessment.
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }
-  double alarmTime() const { return now_.alarm_time; }  ///< time when the level first was not OK [s]
+  double alarmTime() const { return now_.alarm_time; }  ///< time of the first window whose level is not OK [s]
   Cause cause() const;                                  ///< most frequent cause of the windows whose level is not OK
-  double causeShare() const;  ///< share of the windows with a level other than OK that have this cause [-]
+  double causeShare() const;  ///< share of the windows not at level OK that have the cause cause() [-]
 
 private:
-  static constexpr int LOAD_STEPS = 568;  // number of steps of the histogram
+  static constexpr int LOAD_STEPS = 568;  // number of steps of the load in the histogram
   enum Product : int
   {
     ONE,
@@ -464,12 +465,12 @@ private:
     MotionReach reach;
     FrictionPoints friction;
     FrictionPoints beside_controller;
-    std::array<std::uint64_t, LOAD_STEPS + 2> loads{};  // histogram of magnitudes
-    double temperatures{};                              // [degC]
-    Products products{ Products::Zero() };              // of 1 and currents [A]
-    /// Products of 1, predicted friction, the rest of the prediction and the residual, in rows that show friction.
+    std::array<std::uint64_t, LOAD_STEPS + 2> loads{};  // histogram of the load's magnitude
+    double temperatures{};                              // sum of the temperatures [degC]
+    Products products{ Products::Zero() };              // products of 1 and the currents with each other [A], [A^2]
+    /// Products of 1, predicted friction, rest of the prediction and residual, in rows that show friction [A], [A^2].
     Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
-    double gains_time{};  // time of the rows in `gains` [s]
+    double gains_time{};  // duration of the rows in `gains` [s]
     std::uint64_t assessed{};
     std::optional<JudgedWindow> worst;
     std::optional<Assessment> too_few;
@@ -482,17 +483,17 @@ private:
   void addRow(const MotionSample& sample, double residual) noexcept;
   bool watchSignals(const MotionSample& sample) noexcept;
   double loadQuantile(double share) const;
-  double counted() const;  // number of rows that count, 1 at least
+  double counted() const;  // number of rows that count, at least 1
   double rms(Product of) const;
 
   const EvidenceParameters parameters_;
   const LoadOrigin load_;
   const double ratio_;
-  const double load_step_;  // [N.m]
+  const double load_step_;  // width of a step of the load in the histogram [N.m]
   MotionDriven twin_;
   MotionPrediction predicted_;
   TorsionCourse course_;
-  double twin_torsion_{};  // under the load of the last row with a motor angle [rad]
+  double twin_torsion_{};  // torsion of the twin at the last row with a motor angle [rad]
   ContactWatch contact_;
   SignalWatch health_;
   bool baseline_given_{};

@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// Over a longer way the wave generator is not turned but inserted again at its new angle [rad].
+/// Way of the wave generator above which it is inserted anew in place of being turned [rad].
 constexpr double LONG_WAY = 0.5;
 }  // namespace
 
@@ -41,7 +41,7 @@ MeasuredGear::MeasuredGear(const Parameters& parameters)
 bool MeasuredGear::moveTo(double position, double joint_torque) noexcept
 {
   constexpr int MAX_ROUNDS = 5;
-  constexpr double CLOSE = 1e-6;  // of the motor's angle [rad]
+  constexpr double CLOSE = 1e-6;  // largest error of the motor's angle [rad]
   if (!std::isfinite(position) || !(std::abs(joint_torque) <= torque_limit_))
   {
     return false;
@@ -67,7 +67,7 @@ bool MeasuredGear::moveTo(double position, double joint_torque) noexcept
   return true;
 }
 
-/// Brings the ring to equilibrium at an angle of the wave generator.
+/// Finds the equilibrium of the ring at an angle of the wave generator. Returns false if there is none.
 bool MeasuredGear::solve(double motor_angle, double joint_torque) noexcept
 {
   const std::int64_t shift = teeth_are_alike_ ? static_cast<std::int64_t>(std::floor(motor_angle / pitch_)) : 0;
@@ -99,7 +99,7 @@ LobeLoads MeasuredGear::lobes() const noexcept
                      ring_.position().wave_generator_angle });
 }
 
-/// Tooth of the drive that the first tooth of the ring stands for.
+/// Number of the drive's tooth that the first tooth of the ring stands for.
 int MeasuredGear::firstTooth() const noexcept
 {
   const std::int64_t teeth = tooth_angles_.size();

@@ -14,22 +14,23 @@
 
 namespace hjt
 {
-/// The gear of a measured joint: all teeth in equilibrium at the measured angle under the joint's torque of the moment.
+/// The gear of a measured joint, with all teeth in equilibrium at the measured angle and the present torque of the
+/// joint.
 ///
-/// If all teeth are alike, the drive repeats itself after the wave generator has turned by a tooth pitch p of the
-/// flexspline and the output by p / ratio: only the numbers of the teeth differ. The gear then solves the ring within
-/// one pitch and turns the result into place. After construction nothing throws or allocates.
+/// If all teeth are alike, the gear repeats itself each time the wave generator turns by a tooth pitch p of the
+/// flexspline and the output by p / ratio. Only the numbers of the teeth change. The class then solves the ring within
+/// one pitch and renumbers the teeth of the result. After construction nothing throws or allocates.
 class MeasuredGear
 {
 public:
   /// @throws ParameterError if the wave generator cannot be inserted.
   explicit MeasuredGear(const Parameters& parameters);
-  MeasuredGear(const MeasuredGear&) = delete;  // the ring refers to the model
+  MeasuredGear(const MeasuredGear&) = delete;  // no copy, because the ring refers to the model
   MeasuredGear& operator=(const MeasuredGear&) = delete;
 
-  /// Moves the gear to an angle of the joint [rad] and a torque of the mesh on the output [N.m]. False: a number is not
-  /// finite, the torque is beyond output.load_torque_limit, or there is no equilibrium. The angles then stay as they
-  /// were.
+  /// Moves the gear to an angle of the joint [rad] and a torque of the mesh on the output [N.m]. Returns false, and
+  /// keeps the angles, if a number is not finite, the torque exceeds output.load_torque_limit, or there is no
+  /// equilibrium.
   bool moveTo(double position, double joint_torque) noexcept;
 
   double position() const noexcept { return position_; }       ///< angle of the joint [rad]
@@ -42,12 +43,12 @@ public:
   {
     return ring_.stiffness()(1, 1);
   }  ///< torsional stiffness with the wave generator locked [N.m/rad]
-  double residual() const noexcept { return residual_; }  ///< largest out-of-balance force [N]
+  double residual() const noexcept { return residual_; }  ///< largest unbalanced force on a point of the ring [N]
   LobeLoads lobes() const noexcept;
 
-  /// `forces` as Twin::makeToothForces makes them.
+  /// `forces`: made by Twin::makeToothForces.
   void fill(ToothForces& forces) const noexcept;
-  /// `stress`: sized for the gear's teeth.
+  /// `stress`: must have the size for the gear's teeth.
   void fill(ToothStress& stress) const noexcept;
 
 private:
@@ -62,11 +63,11 @@ private:
   const double ratio_;
   const double torque_limit_;     // [N.m]
   Eigen::VectorXd tooth_angles_;  // angles of the teeth at rest [rad]
-  std::int64_t shift_{};          // number of pitches by which the ring is behind the drive
+  std::int64_t shift_{};          // number of pitches by which the ring has turned less than the drive
   double position_{};
   double motor_angle_{};
   double torsion_{};  // torsion of the ring [rad]
-  bool is_lost_{};    // the ring is in no equilibrium
+  bool is_lost_{};    // whether the ring is in no equilibrium
   double residual_{};
 };
 }  // namespace hjt

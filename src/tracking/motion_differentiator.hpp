@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// One row of a robot's telemetry, of one joint.
+/// One row of a robot's telemetry for one joint.
 struct MotionRow
 {
   double time{};      ///< time of the row [s]
   double position{};  ///< angle of the joint [rad]
   double current{};   ///< current of the motor [A]
-  double load{};      ///< load at the output, > 0 resists positive motion [N.m]
+  double load{};      ///< load at the output; > 0 resists positive motion [N.m]
   double motor_angle{ std::numeric_limits<double>::quiet_NaN() };        ///< motor angle; NaN: not measured [rad]
   double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< recorded speed; NaN: not recorded [rad/s]
-  double received{};     ///< time of arrival, from the same zero as `time` [s]
+  double received{};     ///< time of arrival, with the same zero as `time` [s]
   double stamp_error{};  ///< delay of `time` behind the motion [s]
-  /// Torque of the links' vibration at the output, which `load` does not include [N.m].
+  /// Torque at the output by the vibration of the links, which `load` does not contain [N.m].
   double vibration{};
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
@@ -35,51 +35,52 @@ struct MotionRow
   }
 };
 
-/// A row with its rates.
+/// A row with the speed and the acceleration of the joint.
 struct MotionSample : MotionRow
 {
   double velocity{};      ///< speed of the joint [rad/s]
   double acceleration{};  ///< acceleration of the joint [rad/s^2]
-  bool after_gap{};       ///< this sample is the first one after a gap
+  bool after_gap{};       ///< whether this sample is the first one after a gap
 };
 
-/// Speed and acceleration from a stream of angles whose rows may come unevenly, twice or not at all.
+/// Computes speed and acceleration from a stream of angles. Rows may be uneven in time, repeated or missing.
 ///
-/// For each row a parabola is fitted by least squares to the rows within a half width of it, but to two rows on either
-/// side at least, with the true times of the rows. A sample comes out when the rows after it are known, which is the
-/// half width or two rows later at most. Memory is fixed; nothing allocates.
+/// For each row the class fits a parabola by least squares to the rows within a half width of it, and to at least two
+/// rows on each side, at their true times. A sample is ready when the rows after it are known: after the half width or
+/// two rows. Nothing allocates.
 class MotionDifferentiator
 {
 public:
-  static constexpr double HALF_WIDTH = 0.036;  ///< best for the currents of a UR5 (docs/arm.md) [s]
-  static constexpr double MAX_GAP = 0.1;       ///< longer gaps cut the stream [s]
-  static constexpr double MIN_STEP = 0.5e-3;   ///< rows that follow sooner are left out [s]
-  static constexpr double MOVING = 0.02;       ///< slower speeds may be noise of the angles [rad/s]
-  static constexpr double SLIDING = 0.05;      ///< slower motion shows little of friction and load [rad/s]
+  static constexpr double HALF_WIDTH = 0.036;  ///< half width that suits the currents of a UR5 best (docs/arm.md) [s]
+  static constexpr double MAX_GAP = 0.1;       ///< longest gap that does not cut the stream [s]
+  static constexpr double MIN_STEP = 0.5e-3;   ///< least time between rows; push() drops rows that come sooner [s]
+  static constexpr double MOVING = 0.02;       ///< speed below which noise of the angles may be the reason [rad/s]
+  static constexpr double SLIDING = 0.05;  ///< speed below which the motion shows little of friction and load [rad/s]
 
   /// @param half_width up to 0.12 [s]
   explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}
 
-  /// False: the row is not later than the row before, or not finite, and is left out.
+  /// Takes a row. Returns false and drops the row if it is not later than the row before, or not finite.
   bool push(const MotionRow& row) noexcept;
 
-  /// The next sample that is ready, with `at_end` also samples that wait for later rows. Call it until it returns none.
+  /// The next sample that is ready; with `at_end` also a sample that waits for later rows. Call it until it returns
+  /// none.
   std::optional<MotionSample> pop(bool at_end = false) noexcept;
 
-  std::uint64_t refused() const noexcept { return refused_; }  ///< rows left out by `push`
+  std::uint64_t refused() const noexcept { return refused_; }  ///< number of rows that push() dropped
   std::uint64_t gaps() const noexcept { return segment_; }
 
 private:
-  /// Values of a row that a fit uses.
+  /// The values of a row that the fit uses.
   struct Point
   {
-    double time{};            // true [s]
+    double time{};            // time without the stamp's error [s]
     double position{};        // [rad]
-    std::uint64_t segment{};  // number of gaps before it
+    std::uint64_t segment{};  // number of gaps before the row
   };
-  static constexpr std::size_t ROOM = 512;      // holds two windows of rows at MIN_STEP
-  static constexpr int MIN_ROWS = 4;            // a parabola passes through any three rows exactly
-  static constexpr std::uint64_t MIN_SIDE = 2;  // rows to either side, however far apart
+  static constexpr std::size_t ROOM = 512;  // enough for two windows of rows at MIN_STEP
+  static constexpr int MIN_ROWS = 4;  // least number of rows, because a parabola passes through any three rows exactly
+  static constexpr std::uint64_t MIN_SIDE = 2;  // least number of rows on each side, at any distance
 
   const Point& at(std::uint64_t index) const noexcept { return points_[index % ROOM]; }
   MotionSample fit(std::uint64_t index) const noexcept;
@@ -87,8 +88,8 @@ private:
   double half_width_;
   std::array<MotionRow, ROOM> rows_{};
   std::array<Point, ROOM> points_{};
-  std::uint64_t next_{};  // number of the next row to come out
-  std::uint64_t end_{};   // number after the last row
+  std::uint64_t next_{};  // number of the next row that becomes a sample
+  std::uint64_t end_{};   // number after that of the last row
   std::uint64_t segment_{};
   std::uint64_t refused_{};
 };

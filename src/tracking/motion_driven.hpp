@@ -21,7 +21,7 @@
 
 namespace hjt
 {
-/// Motor current of an effort of 1 in the unit `effort` [A], [A/(N.m)].
+/// Motor current for an effort of 1 in the unit `effort` [A], [A/(N.m)].
 inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) noexcept
 {
   const double gain = parameters.telemetry.torque_per_current;
@@ -37,20 +37,20 @@ inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) 
   return 1.0;
 }
 
-/// Motor current of an effort of 1 in the configured unit [A], [A/(N.m)].
+/// Motor current for an effort of 1 in the configured unit [A], [A/(N.m)].
 inline double currentPerEffort(const Parameters& parameters) noexcept
 {
   return currentPerEffort(parameters.telemetry.effort, parameters);
 }
 
-/// Motor torque ripple caused by the kinematic error, referred to the joint.
+/// Ripple of the motor torque that the kinematic error causes, as a torque at the joint.
 ///
-/// Each line is a torque K e, the joint's stiffness times its kinematic error, that a load at rest would feel. The load
-/// moves too: with its resonance w0 on that stiffness and its damping z the gear feels
+/// A load that does not move would feel each line as a torque K e: stiffness of the joint times its kinematic error.
+/// The load moves, with the resonance w0 on this stiffness and the damping z, so the gear feels
 ///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed.
-/// At rest there is no ripple, since the load settles. The four lines have two and four waves in a turn of the motor
-/// against the circular spline, which turns with the output, and against the flexspline. The lines are known up to
-/// telemetry.ripple_fastest; beyond that speed there is no ripple.
+/// At rest there is no ripple, because the load follows the error. There are four lines: two and four waves per turn of
+/// the motor against the circular spline, which turns with the output, and the same against the flexspline. The lines
+/// are known up to the speed telemetry.ripple_fastest. Beyond this speed the class has no ripple.
 class TorqueRipple
 {
 public:
@@ -69,7 +69,7 @@ public:
   {
   }
 
-  /// Ripple at the joint's angle [rad] and speed [rad/s], [N.m].
+  /// Ripple [N.m] at an angle [rad] and a speed [rad/s] of the joint.
   double at(double position, double velocity) const noexcept
   {
     double sum = 0.0;
@@ -84,18 +84,18 @@ public:
     return sum;
   }
 
-  /// Per turn of the joint: circular spline 2, flexspline 2, circular spline 4, flexspline 4.
+  /// Orders per turn of the joint: two waves against circular spline and flexspline, then four waves against each.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// w0^2 - w^2 + 2 i z w0 w; `response`: resonance [Hz], damping [-], lag [s].
+  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment; `response`: resonance [Hz], damping [-], lag [s].
   static std::complex<double> stiffness(double w, const double* response) noexcept
   {
     const double natural = TWO_PI * response[0];
     return { natural * natural - w * w, 2.0 * response[1] * natural * w };
   }
 
-  /// Torque that the gear feels of each line of 1 N.m: the real part is that of the line's cosine, the imaginary part
-  /// that of its sine.
+  /// Torque that the gear feels of a line of 1 N.m, for each line. The real part belongs to the line's cosine, the
+  /// imaginary part to its sine.
   static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
   {
     Waves turned;
@@ -104,7 +104,7 @@ public:
     {
       const double w = orders[i] * velocity;
       const std::complex<double> inverse = std::conj(stiffness(w, response));
-      // The orders of the last two are twice those of the first two.
+      // The orders of the last two lines are twice those of the first two.
       turned[i] = i < 2 ? std::polar(1.0, orders[i] * position - w * response[2]) : turned[i - 2] * turned[i - 2];
       felt[i] = -w * w / std::norm(inverse) * inverse * turned[i];
     }
@@ -113,17 +113,17 @@ public:
 
 private:
   Orders orders_;
-  Waves lines_;                     // cos + i sin [N.m]
+  Waves lines_;                     // each line as cosine + i sine [N.m]
   std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
-  double fastest_;                  // largest speed with ripple; below 0: there is no line [rad/s]
+  double fastest_;                  // largest speed with ripple; negative: the joint has no line [rad/s]
 };
 
-/// Share of the friction that is mobilised, between -1 and 1. After a reversal the share builds up over a presliding
-/// angle of the motor (function `mobilised`). It is the sum of two parts. The part of the contacts builds up over
-/// telemetry.presliding_angle. While the joint stands, that part decays with the time constant RELAXATION, as the
+/// Share of the friction that has built up, between -1 and 1. After a reversal the share builds up over an angle of the
+/// motor (function `mobilised`). It is the sum of two parts. The part of the contacts builds up over
+/// telemetry.presliding_angle. While the joint stands, this part decays with the time constant RELAXATION, as the
 /// current of standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part,
-/// telemetry.lasting_share of the whole, builds up over LASTING_ANGLE and does not decay. The noise of an encoder at
-/// standstill hardly changes the lasting part.
+/// telemetry.lasting_share of the whole, builds up over LASTING_ANGLE and does not decay. Noise of an encoder at
+/// standstill hardly changes it.
 class Presliding
 {
 public:
@@ -135,7 +135,7 @@ public:
   {
   }
 
-  /// The motor turned by `motor_step` [rad] in `duration` [s].
+  /// Turns the motor by `motor_step` [rad] in `duration` [s].
   void move(double motor_step, double duration) noexcept
   {
     contacts_ = mobilised(contacts_ * std::exp(-duration / RELAXATION), motor_step, angle_);
@@ -153,38 +153,39 @@ private:
   double lasting_{};
 };
 
-/// Torque of a load's weight and inertia in a motion, > 0 resists positive motion [N.m].
+/// Torque of a load's weight and inertia in a motion; > 0 resists positive motion [N.m].
 inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
 {
   return load.inertia() * sample.acceleration - load.gravityTorque(sample.position);
 }
 
-/// Motor torque and current of a healthy joint for a motion.
+/// Motor torque and motor current that a sound joint needs for a motion.
 struct MotionPrediction
 {
   double motor_torque{};     ///< torque at the motor shaft [N.m]
   double current{};          ///< current of the motor [A]
-  double friction_torque{};  ///< friction of the whole drive, at the joint, with its sign [N.m]
-  double friction_limit{};   ///< largest friction possible at this speed and load [N.m]
-  double band{};             ///< half width of the current's band, by the share of friction that is not mobilised [A]
+  double friction_torque{};  ///< friction of the whole drive at the joint, with the sign of the motion [N.m]
+  double friction_limit{};   ///< largest possible friction at this speed and load [N.m]
+  double band{};  ///< half width of the current's band, by the share of the friction that has not built up [A]
 
-  /// Whether nearly all of the friction is mobilised, so that the current shows it.
+  /// Whether nearly all of the friction has built up, so that the current shows the friction.
   bool tellsFriction() const
   {
-    constexpr double LEFT = 0.05;  // largest share of the friction that is not mobilised [-]
+    constexpr double LEFT = 0.05;  // largest share of the friction that has not built up [-]
     return friction_limit - std::abs(friction_torque) < LEFT * std::abs(friction_torque);
   }
 };
 
-/// The twin driven by a measured motion: it predicts the torque and the current of the motor. The friction comes from a
-/// table (FrictionMap), so no ring is solved.
+/// The twin driven by a measured motion: predicts torque and current of the motor. The friction comes from a table
+/// (FrictionMap), so no ring is solved.
 ///
 ///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
-/// where n   ratio, a and v the joint's acceleration and speed, J_m motor and wave generator
-///       T_f friction at the motor shaft (FrictionMap), s the mobilised share of it (Presliding)
-///       T_r torque ripple caused by the kinematic error (TorqueRipple)
-/// The load of the sample includes everything that acts at the output, with inertia and weight. A step takes some
-/// hundred nanoseconds; nothing allocates.
+/// where n   ratio; a, v: acceleration and speed of the joint; J_m: inertia of motor and wave generator
+///       T_f friction at the motor shaft (FrictionMap); s: the share of it that has built up (Presliding)
+///       T_r torque ripple by the kinematic error (TorqueRipple); gain, offset: those of the telemetry
+///
+/// The load of a sample includes all torques at the output, with inertia and weight. A step takes some hundred
+/// nanoseconds; nothing allocates.
 class MotionDriven
 {
 public:
@@ -202,7 +203,7 @@ public:
   {
   }
 
-  double ratio() const noexcept { return ratio_; }  ///< nominal, signed [-]
+  double ratio() const noexcept { return ratio_; }  ///< nominal ratio with its sign [-]
 
   MotionPrediction step(const MotionSample& sample) noexcept
   {
@@ -210,7 +211,7 @@ public:
     return bear(sample);
   }
 
-  /// The part of a step that needs no load; it makes no prediction.
+  /// Makes the part of a step that needs no load. It makes no prediction.
   void move(const MotionSample& sample) noexcept
   {
     if (!started_ || sample.after_gap)
@@ -224,7 +225,7 @@ public:
     predicted_at_ = std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// The prediction for the last sample, now with its load and vibration.
+  /// The prediction for the last sample, after move(), with the load and vibration of the sample.
   MotionPrediction bear(const MotionSample& sample) noexcept
   {
     last_ = sample;
@@ -232,16 +233,16 @@ public:
     return predicted_ = predict(predicted_at_);
   }
 
-  /// The prediction for the last sample, with the grease at a temperature [degC].
+  /// The prediction for the last sample if the grease had this temperature [degC].
   MotionPrediction at(double temperature) const noexcept
   {
     return temperature == predicted_at_ ? predicted_ : predict(temperature);
   }
 
-  /// hjt::currentPerEffort of the joint's telemetry [A], [A/(N.m)].
+  /// hjt::currentPerEffort for the joint's telemetry [A], [A/(N.m)].
   double currentPerEffort() const noexcept { return current_per_effort_; }
 
-  /// Friction at the joint in steady motion at a speed [rad/s], load [N.m] and temperature [degC], >= 0 [N.m].
+  /// Friction [N.m] at the joint in steady motion, >= 0, at a speed [rad/s], load [N.m] and temperature [degC].
   double frictionAt(double velocity, double load, double temperature) const noexcept
   {
     return ratio_ * friction_.atViscosity(ratio_ * velocity, load, viscosity(temperature)).sum();
@@ -278,7 +279,7 @@ private:
     return known_[0].viscosity;
   }
 
-  /// Of the grease.
+  /// Viscosity of the grease at the last temperature.
   struct Viscosity
   {
     double temperature{ std::numeric_limits<double>::quiet_NaN() };
@@ -290,27 +291,27 @@ private:
   TorqueRipple ripple_;
   Load load_;
   TelemetryParameters telemetry_;
-  double inertia_;  // inertia of motor and wave generator, less the part in the load [kg.m^2]
+  double inertia_;  // inertia of motor and wave generator that the load does not contain [kg.m^2]
   double ratio_;
-  double temperature_;  // of samples without one [degC]
+  double temperature_;  // temperature for samples without a temperature [degC]
   double current_per_effort_;
   MotionSample last_;
-  MotionPrediction predicted_;  // for the last sample, at the temperature predicted_at_
+  MotionPrediction predicted_;  // prediction for the last sample at the temperature predicted_at_
   mutable std::array<Viscosity, 2> known_;
-  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };  // NaN: nothing is predicted [degC]
+  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };  // NaN: there is no prediction [degC]
   bool started_{};
 };
 
-/// The whole twin driven by a measured motor current, in open loop: it predicts the motion. Differences from the robot
-/// accumulate.
+/// The whole twin driven by a measured motor current in open loop: predicts the motion. Its differences from the robot
+/// grow with time.
 ///
 /// The current of a sample drives the twin from the sample's time on. The weight is that at the measured angle, so that
-/// it stays right where the twin has drifted away. The twin starts at rest at the measured angle, and again after a
+/// it stays right if the twin drifts away. The twin starts at rest at the measured angle, and does so again after a
 /// gap.
 class TorqueDriven
 {
 public:
-  /// @throws ParameterError as the twin.
+  /// @throws ParameterError for the reasons that Twin names.
   explicit TorqueDriven(const Parameters& parameters, const SurfaceSource& surface_source = {})
     : twin_(withoutHeat(withoutWeight(parameters)), surface_source)
     , load_(parameters.output)
@@ -322,13 +323,13 @@ public:
 
   struct Motion
   {
-    double position{};         ///< angle of the joint, at the sample's time [rad]
+    double position{};         ///< angle of the joint at the time of the sample [rad]
     double velocity{};         ///< speed of the joint [rad/s]
     double joint_torque{};     ///< torque of the mesh on the output [N.m]
-    double friction_torque{};  ///< friction of the whole drive, at the joint, against the motion [N.m]
+    double friction_torque{};  ///< friction of the whole drive at the joint, > 0 against the motion [N.m]
   };
 
-  /// State of the joint at the time of `sample`, whose current and load act from then on.
+  /// Returns the state of the joint at the time of `sample`. From this time on its current and load act.
   /// @param load external torque at the output, without the configured weight and inertia [N.m]
   Motion step(const MotionSample& sample, double load) noexcept
   {
@@ -365,9 +366,9 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;       // of samples without one [degC]
+  double temperature_;       // temperature for samples without a temperature [degC]
   double start_position_{};  // angle of the joint at which the twin's angle is 0 [rad]
   bool started_{};
-  std::uint64_t solver_failures_{};  // number of failures before the last start
+  std::uint64_t solver_failures_{};  // number of solver failures before the last start
 };
 }  // namespace hjt
