@@ -106,8 +106,7 @@ public:
 
 private:
   static constexpr int STEPS = 142;            // number of steps up to the largest load
-  static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion that allows an
-                                               // estimate [rad]
+  static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion for a result [rad]
   // Columns of the regression. Column 0 is a constant, column 1 the direction of turning. The fit leaves out COSINE and
   // SINE.
   static constexpr int TWIN = 2;

@@ -14,12 +14,12 @@ namespace hjt
 {
 namespace
 {
-constexpr double DAMPING = 0.02;    // damping of the torsional swing, as a share of critical damping [-]
-constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations
-// Standard deviations of the first state.
-constexpr double FIRST_TORSION = 1.0e-4;        // deviation of the torsion [rad]
-constexpr double FIRST_SPEED = 1.0;             // deviation of the joint's speed [rad/s]
-constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // the first disturbance is as large as its growth in this time [s]
+constexpr double DAMPING = 0.02;    // damping of the torsional swing, as a share of the critical damping [-]
+constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations [-]
+// Standard deviations of the state at the start.
+constexpr double FIRST_TORSION = 1.0e-4;        // standard deviation of the torsion [rad]
+constexpr double FIRST_SPEED = 1.0;             // standard deviation of the speed of the joint [rad/s]
+constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // the first disturbance may be as large as its growth in this time [s]
 
 using Vector = ObserverPiece::Vector;
 using Matrix = ObserverPiece::Matrix;
@@ -30,7 +30,7 @@ ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, do
 {
   ObserverPiece piece;
   piece.stiffness = stiffness;
-  // Damping of the swing of both bodies against each other, seen from the output.
+  // Damping coefficient of the swing of both bodies against each other, seen from the output.
   const double reduced = 1.0 / (1.0 / (inertia[0] * ratio * ratio) + 1.0 / inertia[1]);
   const double damping = 2.0 * DAMPING * std::sqrt(stiffness * reduced);
 
@@ -81,7 +81,7 @@ Observer::Observer(const Parameters& parameters)
   }
 }
 
-/// Starts at rest under the load, with a covariance so large that the first rows determine speed and disturbance.
+/// Starts at rest under the load. The covariance is so large that the first rows determine speed and disturbance.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
@@ -97,14 +97,14 @@ void Observer::start(const Measurement& measurement) noexcept
   started_ = true;
 }
 
-/// Moves the state and its covariance on by one step.
+/// Advances the state and its covariance by one step.
 void Observer::predict(double motor_torque, double load_torque, double temperature) noexcept
 {
   const double torsion = state_[0] / ratio_ - state_[2];
   const double gear = curve_.torque(torsion);
   const ObserverPiece& piece = pieces_[curve_.pieceAt(torsion)];
 
-  // The curve's own torque where the linear piece gives stiffness times torsion.
+  // Torque of the torsion curve, less the torque stiffness times torsion of the linear piece.
   const double beyond = gear - piece.stiffness * torsion;
   const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
   const Vector free =
@@ -112,7 +112,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
 
   const double most = friction_.at(state_[1], gear, temperature).sum();
   const double by_friction = piece.input(1, 0);
-  double taken = 1.0 / by_friction;  // friction over the speed without friction, while it holds the motor [N.m.s/rad]
+  double taken = 1.0 / by_friction;  // of a held motor: friction over its speed without friction [N.m.s/rad]
   if (presliding_angle_ > 0.0)
   {
     taken = preslide(most, free[1], by_friction);
@@ -127,7 +127,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   Matrix transition = piece.transition;
   if (sticking_)
   {
-    // The friction takes away the speed that the motor would get, which is a linear map too.
+    // The friction takes away the speed that the motor would have. This is a linear map too.
     Matrix held = Matrix::Identity();
     held.col(1) -= piece.input.col(0) * taken;
     transition = held * transition;
@@ -140,9 +140,9 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   now_ += STEP;
 }
 
-/// Sets the friction that has built up over the presliding angle at the end of a step. `most`: largest friction [N.m].
-/// `free`: motor speed at that end without friction [rad/s]. `response`: speed that a friction of 1 N.m takes away.
-/// @returns the slope of the friction over `free` [N.m.s/rad].
+/// Sets the friction that has built up over the presliding angle until the end of a step. `most`: largest friction
+/// [N.m]. `free`: speed of the motor at the end without friction [rad/s]. `response`: speed that a friction of 1 N.m
+/// takes away [rad/s]. Returns the slope of the friction over `free` [N.m.s/rad].
 double Observer::preslide(double most, double free, double response) noexcept
 {
   constexpr int BISECTIONS = 40;
@@ -162,7 +162,7 @@ double Observer::preslide(double most, double free, double response) noexcept
   return growth / (1.0 + response * growth);
 }
 
-/// Corrects the state by one measured angle. Returns the innovation [rad].
+/// Corrects the state by one measured angle. Returns measured - expected angle [rad].
 double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
 {
   const double innovation = measured - state_[angle];
@@ -186,7 +186,7 @@ Observation Observer::step(const Measurement& measurement) noexcept
   {
     predict(motor_torque, load_torque, temperature);
   }
-  // The row lies within half a step of the state.
+  // The time of the row differs from that of the state by at most half a step.
   const double beside = measurement.time - now_;
   if (std::isfinite(measurement.motor_angle))
   {

@@ -13,8 +13,8 @@
 
 namespace hjt
 {
-/// The joint about one local stiffness, for one step: x' = transition x + input (motor torque, output torque).
-/// x: motor angle and speed, output angle and speed, disturbance torque at the motor.
+/// Linear model of the joint with one local stiffness, for one step: x' = transition x + input (motor torque, output
+/// torque). x: angle and speed of the motor, angle and speed of the output, disturbance torque at the motor.
 struct ObserverPiece
 {
   using Vector = Eigen::Matrix<double, 5, 1>;
@@ -34,14 +34,12 @@ struct ObserverPiece
   Matrix process;  ///< covariance of the process noise over a step
 };
 
-/// The exact step of one stiffness. `inertia`: of motor and output [kg.m^2]; `step`: its length [s].
-/// The torsional swing has two per cent of critical damping, so that a swing faster than the rows does not persist
-/// unseen.
+/// Makes the exact step with one stiffness. `inertia`: those of motor and output [kg.m^2]. `step`: length of the step
+/// [s]. The torsional swing has two per cent of the critical damping, so that a swing too fast for the rows decays.
 ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
                                 const ObserverParameters& noise);
 
-/// Kalman gain of one measured angle. The function replaces the covariance by that after the measurement (Joseph's
-/// form).
+/// Kalman gain of one measured angle. Replaces the covariance by the covariance after the measurement (Joseph's form).
 ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece::State angle, double noise) noexcept;
 
 /// Measurements at one instant.
@@ -50,42 +48,41 @@ struct Measurement
   double time{};          ///< time of the measurements [s]
   double motor_torque{};  ///< motor torque, estimated from the current [N.m]
   double load_torque{};   ///< external torque at the output, > 0 resists positive motion [N.m]
-  double output_angle{};  ///< output angle by the encoder [rad]
-  double motor_angle{};   ///< motor angle by the encoder; NaN: there is no such encoder [rad]
-  bool restarted{};       ///< first after a gap: the state before is discarded
+  double output_angle{};  ///< angle by the encoder at the output [rad]
+  double motor_angle{};   ///< angle by the encoder at the motor; NaN: no such encoder [rad]
+  bool restarted{};       ///< first measurement after a gap, which replaces the state
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };  ///< temperature of the drive; NaN: as configured [degC]
 };
 
-/// Estimate after the measurement.
+/// Estimate after a measurement.
 struct Observation
 {
-  double motor_angle{};      ///< motor angle, whose zero follows from output and load at the start [rad]
+  double motor_angle{};      ///< motor angle; output angle and load at the start define its zero [rad]
   double motor_velocity{};   ///< [rad/s]
   double output_angle{};     ///< [rad]
   double output_velocity{};  ///< [rad/s]
   double joint_torque{};     ///< torque in the gear, at the output [N.m]
-  double friction_torque{};  ///< friction of a healthy joint at the motor, with its sign [N.m]
+  double friction_torque{};  ///< friction of a sound joint at the motor, with the sign of the motion [N.m]
   double
       residual_torque{};   ///< torque at the motor, beyond that of a healthy joint, that explains the measurement [N.m]
-  double residual_band{};  ///< three standard deviations for a healthy joint with the configured noise [N.m]
-  double innovation{};     ///< measured less predicted output angle [rad]
-  double innovation_band{};  ///< band of the innovation: three deviations [rad]
-  bool sticking{};           ///< friction holds the motor: any torque within it fits, so the residual carries no
-                             ///< information
+  double residual_band{};  ///< three standard deviations of a sound joint's residual with the configured noise [N.m]
+  double innovation{};     ///< measured - predicted output angle [rad]
+  double innovation_band{};  ///< three standard deviations of the innovation [rad]
+  bool sticking{};  ///< friction holds the motor: the residual then says nothing, because any torque within it fits
 };
 
-/// An extended Kalman filter of a joint with four states. The measured torque drives the joint, and the encoder of the
-/// output, or both encoders, correct it. The filter runs in steps of STEP, so that rows may come unevenly or not at
-/// all.
+/// An extended Kalman filter for angle and speed of motor and output and for a disturbance torque. The measured motor
+/// torque drives the model, and the encoders correct it. The filter advances in steps of STEP, so that rows may be
+/// uneven in time or missing.
 ///
-/// Torsion and friction are the twin's (TorsionCurve, FrictionMap). The friction is implicit: as large as it takes to
-/// stop the motor, but no larger than the twin's; with motor.presliding_angle it builds up over that angle. While the
-/// motor sticks, the measured angle does not update the disturbance, so that the estimate does not wind up. Its band
-/// widens instead. If the robot moves nevertheless, the model's output follows it until the torque of the spring
-/// exceeds stiction. The remaining torque is the residual: more friction, or an unknown load. The observer never adapts
-/// the model's parameters, so that no fault is adapted away. A step takes about a microsecond.
+/// Torsion and friction are those of the twin (TorsionCurve, FrictionMap). The friction is implicit: just large enough
+/// to stop the motor, but at most that of the twin. With motor.presliding_angle it builds up over this angle. While the
+/// motor sticks, the measured angle does not change the disturbance, so that this estimate does not grow without limit.
+/// Its band widens instead. If the robot moves nevertheless, the output of the model follows it until the torque of the
+/// spring exceeds stiction. The residual is the torque that remains: more friction, or an unknown load. The observer
+/// never adapts the parameters of the model, because it would adapt them to a fault. A step takes about a microsecond.
 class Observer
 {
 public:
@@ -106,8 +103,8 @@ private:
   Load load_;
   ObserverParameters noise_;
   double ratio_;
-  double temperature_;       // of measurements without one [degC]
-  double presliding_angle_;  // presliding angle of the motor [rad]
+  double temperature_;       // temperature for measurements without a temperature [degC]
+  double presliding_angle_;  // angle of the motor over which friction builds up [rad]
   TorsionCurve curve_;
   std::vector<ObserverPiece> pieces_;  // linear pieces of the torsion curve
   ObserverPiece::Vector state_;
@@ -115,9 +112,9 @@ private:
   Measurement last_;
   bool started_{};
   double now_{};           // time of the state [s]
-  double motor_zero_{};    // of the motor encoder [rad]
+  double motor_zero_{};    // zero of the motor's encoder [rad]
   double friction_now_{};  // [N.m]
-  double mobilised_{};     // share of the friction that is mobilised
+  double mobilised_{};     // share of the friction that has built up, with its sign [-]
   bool sticking_{};
   double angle_deviation_{};  // expected standard deviation of the last innovation [rad]
 };

@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace
 {
-/// Reads a file of a report. JSON files are valid YAML.
+/// Reads a file of a report as YAML, because JSON files are valid YAML.
 YAML::Node readData(const std::string& directory, const char* name)
 {
   const std::string path = directory + "/" + name;
@@ -37,7 +37,7 @@ YAML::Node readData(const std::string& directory, const char* name)
   }
 }
 
-/// Numbers of a comparison. A number that is null, or that an older file lacks, is NaN.
+/// Reads numbers of a comparison. A number is NaN if it is null, or if the file is older and lacks it.
 template <std::size_t N>
 std::array<double, N> readNumbers(const std::string& directory, const std::array<const char*, N>& names)
 {
@@ -102,7 +102,7 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
         readNumbers<3>(directory, { "compliance_ratio", "temperature", "friction_deviation" });
     compliances += compliance;
     temperatures += temperature;
-    if (std::isfinite(friction_deviation))  // else the friction was not judged
+    if (std::isfinite(friction_deviation))  // otherwise the recording did not show the friction
     {
       frictions.push_back({ readFriction(directory), friction_deviation });
     }

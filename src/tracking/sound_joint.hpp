@@ -9,26 +9,26 @@
 
 namespace hjt
 {
-// Files that `joint_twin compare` writes into the directory of an arm's or a joint's report.
+// Files that `joint_twin compare` writes into the directory of the report on an arm or a joint.
 constexpr const char* ARM_FILE = "arm.json";
 constexpr const char* COMPARISON_FILE = "comparison.json";
 constexpr const char* BASELINE_FILE = "baseline.yaml";
 constexpr const char* FRICTION_FILE = "friction.csv";
 
-/// Figures of the sound joint from earlier comparisons.
+/// Reference of a joint: figures from earlier comparisons when it was sound.
 struct SoundJoint
 {
   OwnReference own;
-  std::vector<ReferenceBin> baseline;  ///< none: the recordings were too short for one
+  std::vector<ReferenceBin> baseline;  ///< reference of the signals; empty: the recordings were too short
 };
 
-/// Name or file of the arm of a report, as it was given when the report was made.
+/// Name or file of the arm of a report, as the user gave it for the report.
 /// @throws InputError if the directory holds no report of an arm.
 std::string armOfReport(const std::string& directory);
 
-/// Reads the reports of one or more recordings of the sound joint. The friction is the mean over the recordings at each
-/// speed, and the differences between the recordings tell how well the joint repeats. A recording in which the friction
-/// was not judged does not count for it. Without directories nothing is known.
+/// Reads the reports on one or more recordings of a sound joint. The friction at each speed is the mean over the
+/// recordings, and their differences show how well the joint repeats. A recording without a verdict on the friction
+/// does not count for the friction. Without directories the reference is empty.
 /// @throws InputError if a directory holds no comparison, or one of another gear.
 SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Parameters& parameters);
 }  // namespace hjt

@@ -15,9 +15,9 @@
 
 namespace hjt
 {
-/// Checks whether motor and joint turn by the configured ratio. The fit is the slope of the motor's angle over the
-/// joint's, by least squares of their changes from row to row, so that a constant torsion has no effect. Nothing but
-/// the text allocates.
+/// Checks whether motor and joint turn by the configured ratio. The found ratio is the slope of the motor angle over
+/// the joint angle, by least squares of the changes from row to row, so that a constant torsion has no effect. Only
+/// text() allocates.
 class RatioFit
 {
 public:
@@ -41,13 +41,13 @@ public:
     last_ = row;
   }
 
-  /// NaN: the joint moved too little to tell.
+  /// The found ratio [-]; NaN: the joint moved too little.
   double ratio() const noexcept
   {
     return way_ > LEAST_WAY ? products_ / squares_ : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// A clause on a wrong ratio; empty: the ratio is as configured, or not known.
+  /// A clause that the ratio is wrong; empty: the ratio is as configured, or not known.
   std::string text() const
   {
     const double found = ratio();
@@ -61,7 +61,7 @@ public:
 
 private:
   static constexpr double LEAST_WAY = 0.5;  // [rad]
-  static constexpr double OFF = 0.005;      // torsion and encoders have less effect on the ratio [-]
+  static constexpr double OFF = 0.005;  // least deviation that counts, as a share; torsion and encoders cause less [-]
 
   double ratio_;
   MotionRow last_;
@@ -78,11 +78,11 @@ struct FittedFactor
   double uncertainty{};                                      ///< standard deviation of the factor
 };
 
-/// Checks whether the recorded velocities of a joint agree with the slopes of its angles, by their stamps.
+/// Checks whether the recorded velocities of a joint agree with the slopes of its angles over the stamps.
 ///
-/// Both are averaged over pieces of 0.1 s. Their factor is the weighted median over windows of 0.8 s in which the joint
-/// moves, so that single wrong rows do not count. The lag follows from least squares, to first order. Only the last
-/// MEMORY pieces of motion count. Memory is fixed; nothing allocates.
+/// The class averages both over pieces of 0.1 s. The factor is the weighted median of their ratios over windows of 0.8
+/// s with motion, so that single wrong rows do not count. The lag follows from least squares, to first order. Only the
+/// last MEMORY pieces with motion count. Nothing allocates.
 class TimeFit
 {
 public:
@@ -90,7 +90,7 @@ public:
 
   void reset() noexcept { *this = TimeFit(); }
 
-  /// `velocity`: as recorded; NaN: none.
+  /// Adds a row. `velocity`: recorded velocity; NaN: none [rad/s].
   void add(double time, double position, double velocity) noexcept
   {
     const double step = time - time_;
@@ -119,7 +119,7 @@ public:
     has_velocity_ = has_velocity_ || std::isfinite(velocity);
   }
 
-  /// Change of the angles over the integral of the velocities; 1: they agree; infinite: the velocities are zero.
+  /// Change of the angles over the integral of the velocities [-]. 1: they agree; infinite: the velocities are zero.
   FittedFactor factor() const noexcept
   {
     const std::size_t count = std::min<std::uint64_t>(windows_, KEPT);
@@ -160,7 +160,8 @@ public:
     return factor;
   }
 
-  /// Lag of the recorded velocity behind the slope of the angles [s]. It has a meaning only where the factor is near 1.
+  /// Lag of the recorded velocity behind the slope of the angles [s]. The lag has a meaning only if the factor is near
+  /// 1.
   FittedFactor lag() const noexcept
   {
     FittedFactor lag;
@@ -179,9 +180,9 @@ private:
   static constexpr int PIECES = 8;                   // number of pieces in a window
   static constexpr std::size_t MIN_WINDOWS = 6;      // least number of windows for a median
   static constexpr std::size_t KEPT = 256;           // number of kept windows: 200 s of motion
-  static constexpr double MEMORY = 2000.0;           // number of pieces from which the lag is computed
+  static constexpr double MEMORY = 2000.0;           // number of pieces over which the lag is averaged
   static constexpr double MIN_ACCELERATED = 20.0;    // least number of pieces with an acceleration
-  static constexpr double LEAST_ACCELERATION = 0.1;  // least acceleration of such a piece [rad/s^2]
+  static constexpr double LEAST_ACCELERATION = 0.1;  // least acceleration of a piece with an acceleration [rad/s^2]
 
   struct Piece
   {
@@ -231,12 +232,12 @@ private:
   double velocity_{};
   bool has_velocity_{};
   Piece piece_;
-  std::uint64_t pieces_{};  // number of pieces without a gap
+  std::uint64_t pieces_{};  // number of pieces since the last gap
   std::array<Piece, 3> last_;
   Piece window_;
   std::array<Piece, KEPT> kept_;
   std::uint64_t windows_{};
-  double accelerations_{};  // sums of squares and products
+  double accelerations_{};  // sums of squares and of products of accelerations
   double products_{};
   double differences_{};
   double accelerated_{};

@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// A message with a number beyond these limits was damaged [s], [rad], [A] or [N.m].
+/// Largest numbers in a sound message [s], [rad], [A] or [N.m]. Larger numbers come from damage.
 constexpr double MAX_TIME = 1e-9 * static_cast<double>(MAX_STAMP);
 constexpr double MAX_ANGLE = 1.0e4;
 constexpr double MAX_EFFORT = 1.0e4;
@@ -28,39 +28,39 @@ inline bool isPlausibleEffort(double effort) noexcept
   return std::abs(effort) <= MAX_EFFORT;  // false for NaN
 }
 
-/// Whether time, position and current can be true, and the motor's angle if there is one.
+/// Whether time, position and current can be true, and also the motor angle if the row has one.
 inline bool isPlausible(const MotionRow& row) noexcept
 {
   return std::abs(row.time) < MAX_TIME && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
          !(std::abs(row.motor_angle) > MAX_ANGLE * MAX_ANGLE);
 }
 
-/// Largest current that the motor of this joint can take [A].
+/// Largest current that the motor of this joint can draw [A].
 inline double possibleCurrent(const Parameters& parameters) noexcept
 {
-  constexpr double MARGIN = 3.0;  // ratio of a current's peaks to the motor's continuous torque [-]
+  constexpr double MARGIN = 3.0;  // largest current over the current of the motor's continuous torque [-]
   return MARGIN * parameters.motor.torque_limit * nominalRatio(parameters.gear) /
          parameters.telemetry.torque_per_current;
 }
 
-/// How stamped rows arrive. Times in seconds from one zero.
+/// Timing of a stream of stamped rows. All times have the same zero.
 struct StreamTimingReport
 {
-  std::uint64_t rows{};      ///< rows with a later stamp than the row before
-  std::uint64_t repeated{};  ///< rows with the stamp of the row before
-  std::uint64_t backward{};  ///< rows with an earlier stamp than the row before
-  std::uint64_t missing{};   ///< rows that are missing between two others, by the period
-  double period{};           ///< median step between stamps of the last rows [s]
+  std::uint64_t rows{};      ///< number of rows with a later stamp than the row before
+  std::uint64_t repeated{};  ///< number of rows with the stamp of the row before
+  std::uint64_t backward{};  ///< number of rows with an earlier stamp than the row before
+  std::uint64_t missing{};   ///< number of rows that are missing between two others, by the period
+  double period{};           ///< median step between the stamps of the last rows [s]
   double longest_gap{};      ///< longest step between stamps [s]
-  double offset{};           ///< smallest reception less stamp of the last rows: clocks and shortest transport [s]
-  double jitter{};           ///< 95 % of the rows arrive within this time after the offset [s]
+  double offset{};  ///< smallest delay from stamp to arrival: difference of the clocks + shortest transport [s]
+  double jitter{};  ///< time after `offset` within which 95 % of the rows arrive [s]
 };
 
 /// Watches the stamps of a stream and the times when its rows arrive. Memory is fixed; nothing allocates.
 class StreamTiming
 {
 public:
-  /// Stamps that go back by more than this begin a new stream: a new recording, or a clock that was set [s].
+  /// Jump back of the stamps that begins a new stream: a new recording, or a clock that was set [s].
   static constexpr double RESTART = 1.0;
 
   void reset() noexcept { *this = StreamTiming(); }
@@ -78,7 +78,7 @@ public:
     }
     const double interval = report_.rows > 0 ? time - last_ : 0.0;
     const std::size_t slot = report_.rows % KEPT;
-    // The first row has no interval, so the second row's interval stands for it.
+    // The first row has no interval before it, so the interval of the second row takes its place.
     intervals_[slot] = interval;
     intervals_[0] = report_.rows == 1 ? interval : intervals_[0];
     delays_[slot] = received - time;
@@ -106,7 +106,7 @@ public:
 
 private:
   static constexpr std::size_t KEPT = 256;  // number of rows from which medians are computed
-  static constexpr std::size_t RENEW = 32;  // number of rows between two updates of the period
+  static constexpr std::size_t RENEW = 32;  // number of rows from one update of the period to the next
 
   template <std::size_t N>
   static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept
@@ -128,14 +128,14 @@ private:
   double last_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Makes the angles of a joint continuous if their source folds them into one turn. Nothing allocates.
+/// Makes the angles of a joint continuous if their source keeps them within one turn. Nothing allocates.
 ///
 /// A step within MotionDifferentiator::MAX_GAP that differs from one turn by less than NEAR is a fold, because no joint
-/// turns as far in that time. A gap does not change the number of turns.
+/// turns so far in this time. The number of turns stays the same over a gap.
 class UnfoldedAngle
 {
 public:
-  /// `angle` [rad] at `time` [s].
+  /// Returns the continuous angle for `angle` [rad] at `time` [s].
   double take(double time, double angle) noexcept
   {
     const double step = angle - last_;
@@ -164,37 +164,38 @@ private:
   std::uint64_t folds_{};
 };
 
-/// Rows that RowFilter left out, by the reason.
+/// Number of rows that RowFilter dropped, by the reason.
 struct LeftOutRows
 {
-  std::uint64_t impossible{};   ///< a value is not finite, or beyond what a sound message holds
-  std::uint64_t unreachable{};  ///< an angle that the rows before and after it contradict
-  std::uint64_t repeated{};     ///< all values are those of the row before, while the joints move
-  std::uint64_t bunched{};      ///< rows that follow the row before much sooner than by the period
+  std::uint64_t impossible{};   ///< a value is not finite, or larger than a sound message can hold
+  std::uint64_t unreachable{};  ///< the rows before and after contradict an angle
+  std::uint64_t repeated{};     ///< all values are those of the row before, although the joints move
+  std::uint64_t bunched{};      ///< the row follows the row before much sooner than the period
 
   std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
 };
 
-/// The greatest speed of a joint by its motor [rad/s].
+/// Largest speed of a joint that its motor allows [rad/s].
 inline double greatestSpeed(const Parameters& parameters) noexcept
 {
   return parameters.motor.speed_limit / nominalRatio(parameters.gear);
 }
 
-/// Passes the rows of several joints that are new and can be true, of recordings, arrays and live messages alike.
+/// Passes only rows of several joints that are new and can be true, from recordings, arrays or live messages.
 ///
-/// The filter holds back an angle that the joint cannot have reached from the row before. If a later row, within
-/// MotionDifferentiator::MAX_GAP, can be reached from that row before, the filter drops the rows that it held back.
-/// Otherwise the angles did jump, or stamps or unit are wrong, and the filter passes all rows: other checks report such
-/// faults. No good row waits but the first one, which has no row before it.
+/// The filter holds back a row with an angle that the joint cannot have reached since the row before. If a later row,
+/// within MotionDifferentiator::MAX_GAP, can be reached from the row before, the filter drops the rows that it held
+/// back. Otherwise the angles did jump, or stamps or unit are wrong. The filter then passes all rows, because other
+/// checks report such faults. Only the first row waits although it is good, because no row is before it.
 /// A row that repeats the angles, currents and velocities of all joints while they move was not measured: a recorder
-/// was stuck, or a driver publishes faster than its robot measures. A row that follows another one within a quarter of
-/// the mean step was stamped when a buffer was emptied, so that its stamp is not its time. After construction nothing
+/// was stuck, or a driver publishes faster than its robot measures. A row that follows within a quarter of the mean
+/// step was stamped when a buffer was emptied, so its stamp is not its time. After construction nothing throws or
+/// allocates.
 /// throws or allocates.
 class RowFilter
 {
 public:
-  static constexpr double SLACK = 0.02;  ///< added to the step between rows, because messages come in bursts [s]
+  static constexpr double SLACK = 0.02;  ///< allowed error of a step between rows, because messages come in bursts [s]
 
   using Rows = std::vector<MotionRow>;
 
@@ -204,7 +205,7 @@ public:
   {
   }
 
-  /// Starts a new stream.
+  /// Forgets all rows, because those of another stream follow.
   void reset() noexcept
   {
     has_last_ = has_raw_ = is_confirmed_ = moves_ = false;
@@ -213,8 +214,8 @@ public:
     mean_step_ = 0.0;
   }
 
-  /// Takes one row of each joint, all of one time. Calls `visit` with the rows of each time that pass, in their order.
-  /// False: `visit` returned false, and needs no more rows.
+  /// Takes one row of each joint, all of one time. Calls `visit` with the rows that pass, one time after the other.
+  /// Returns false if `visit` returned false, because it needs no more rows.
   template <class Visit>
   bool push(const Rows& rows, const Visit& visit)
   {
@@ -243,7 +244,7 @@ public:
     return more && place(rows, visit);
   }
 
-  /// Ends the stream: passes the first row if it still waits, and drops the rows that are held back.
+  /// Ends the stream: passes the first row if it still waits, and drops the rows that the filter holds back.
   template <class Visit>
   bool finish(const Visit& visit)
   {
@@ -257,11 +258,11 @@ public:
   const LeftOutRows& leftOut() const noexcept { return left_out_; }
 
 private:
-  static constexpr std::size_t ROOM = 16;       // largest number of rows that are held back
-  static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
-  static constexpr double MOVING = 0.01;        // least speed of a joint that moves [rad/s]
-  static constexpr double BUNCHED = 0.25;       // largest step of a bunched row, as a share of the mean step [-]
-  static constexpr double MEMORY = 64.0;        // number of rows over which the mean step is averaged
+  static constexpr std::size_t ROOM = 16;  // largest number of rows that the filter holds back
+  static constexpr double MARGIN = 1.2;    // factor on the greatest speed [-]
+  static constexpr double MOVING = 0.01;   // least speed of a joint that moves [rad/s]
+  static constexpr double BUNCHED = 0.25;  // step of a row below which it is bunched, as a share of the mean step [-]
+  static constexpr double MEMORY = 64.0;   // number of rows over which the mean step is averaged
   static constexpr std::uint64_t SETTLED = 16;  // number of rows after which the mean step counts
 
   bool canReach(const Rows& from, const Rows& to) const noexcept
@@ -333,7 +334,7 @@ private:
     }
     if (!is_confirmed_ && held_count_ > 0 && canReach(held_[held_count_ - 1], rows))
     {
-      // Two rows agree with each other and contradict the first one.
+      // This row agrees with the row that the filter holds back, and both contradict the first row.
       ++left_out_.unreachable;
       is_confirmed_ = true;
       return release(visit) && accept(rows, visit);
@@ -355,7 +356,7 @@ private:
     return more && visit(last_);
   }
 
-  /// Gives the rows that were held back to `visit`.
+  /// Passes the rows that the filter holds back to `visit`.
   template <class Visit>
   bool release(const Visit& visit)
   {
@@ -369,14 +370,14 @@ private:
   }
 
   std::vector<double> speeds_;
-  Rows last_;               // rows that passed last; the first ones wait for the second
-  Rows raw_;                // last rows before the filter, without repeated ones
-  std::vector<Rows> held_;  // rows that cannot be reached from last_
+  Rows last_;               // the rows that passed last; the first rows wait here for the second ones
+  Rows raw_;                // the last rows before the filter, without repeated rows
+  std::vector<Rows> held_;  // the rows that the joints cannot have reached from last_
   std::size_t held_count_{};
   bool has_last_{};
   bool has_raw_{};
-  bool is_confirmed_{};  // the rows in last_ have passed
-  bool moves_{};         // the joints move, by the angles of the two rows before
+  bool is_confirmed_{};  // whether the rows in last_ have passed
+  bool moves_{};         // whether the joints moved between the last two rows
   std::uint64_t rows_{};
   double mean_step_{};  // mean step between rows [s]
   double kept_{};       // time of the last row that was not bunched [s]

@@ -16,10 +16,10 @@ namespace hjt
 {
 namespace
 {
-/// Half width of a band, in standard deviations.
+/// Half width of a band, in standard deviations [-].
 constexpr double DEVIATIONS = 3.0;
 
-/// Whether loads of this source include everything that acts at the output, with weight and inertia.
+/// Whether loads of this source contain all torques at the output, with weight and inertia.
 bool holdsAll(LoadSource source)
 {
   return source == LoadSource::TARGET_MOMENT || source == LoadSource::ARM;
@@ -64,7 +64,7 @@ void Tracker::reset() noexcept
   restart();
 }
 
-/// Starts again, but keeps loads and temperatures.
+/// Forgets all rows, but keeps loads and temperatures.
 void Tracker::restart() noexcept
 {
   refused_ += smoother_.refused();
@@ -93,13 +93,13 @@ void Tracker::pushLoad(double time, double torque) noexcept
   }
 }
 
-/// The last load that is not later than `time`.
+/// The last load that is not later than `time`; none: the load comes from the model, or there is none so early.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
 }
 
-/// Prepares for a row of that time, which may be a restart.
+/// Prepares for a row at `time`. A jump back in time starts the tracker again.
 void Tracker::begin(double time) noexcept
 {
   if (time < last_time_ - StreamTiming::RESTART)
@@ -161,7 +161,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   const bool is_known = received || load_source_ == LoadSource::MODEL;
   load_is_known_ = is_known;
   sample.load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, sample));
-  // The controller's load holds part of the motor's inertia already; it is not added again.
+  // The load of the controller contains a part of the motor's inertia. This part must not count twice.
   const double external =
       received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample.acceleration : 0.0);
 
@@ -176,8 +176,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   now.temperature_received = is_temperature_received;
   now.housing_temperature = grease_.housing(prediction_temperature);
   now.after_gap = sample.after_gap;
-  // The evidence of health uses the temperature beside the motor, as `compare` does. The comparison uses that of the
-  // grease.
+  // The evidence uses the temperature beside the motor, as `compare` does. The comparison uses that of the grease.
   evidence_.predict(sample);
   sample.temperature = prediction_temperature;
   if (torque_driven_)
@@ -194,7 +193,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   }
   grease_.book(sample.velocity, now.friction_torque,
                telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
-  now.current.band = is_known ? now.current.band : 0.0;  // without the load the current cannot be judged
+  now.current.band = is_known ? now.current.band : 0.0;  // without a load the current cannot be judged
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
   sample.temperature = received_temperature;
@@ -211,7 +210,7 @@ void Tracker::predictByTorque(const MotionSample& sample, double external, Compa
   now.friction_torque = motion.friction_torque;
 }
 
-/// The twin of the evidence has made the step already.
+/// Uses the step that the twin of evidence_ has made already.
 void Tracker::predictByMotion(const MotionSample& sample, Comparison& now) const noexcept
 {
   const MotionPrediction predicted = evidence_.twin().at(sample.temperature);
@@ -230,7 +229,7 @@ void Tracker::predictByObserver(const MotionSample& sample, double external, Com
                         sample.position, sample.motor_angle, sample.after_gap, sample.temperature });
   now.position.predicted = sample.position - seen.innovation;
   now.position.band = seen.innovation_band;
-  // The velocity is that of the rotor: the output swings by the error of the load.
+  // The velocity of the rotor, because the output swings by the error of the load.
   now.velocity.predicted = seen.motor_velocity / ratio_;
   now.current.predicted = sample.current + to_current * seen.residual_torque;
   now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);
@@ -239,7 +238,7 @@ void Tracker::predictByObserver(const MotionSample& sample, double external, Com
   now.joint_torque = seen.joint_torque;
 }
 
-/// Adds a row to evidence, lag, counters and the share of rows outside.
+/// Adds a row to evidence, lag, counters and outsideShare().
 void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load_is_known) noexcept
 {
   if (load_is_known)
@@ -250,7 +249,7 @@ void Tracker::watch(const MotionSample& sample, const Comparison& now, bool load
       now.after_gap || evidence_.isTouched() ? 0.0 : std::clamp(now.time - last_compared_, 0.0, OUTSIDE_MEMORY);
   outside_share_ += (1.0 - std::exp(-step / OUTSIDE_MEMORY)) * ((now.isOutside() ? 1.0 : 0.0) - outside_share_);
   last_compared_ = now.time;
-  if (!observer_)  // the observer's prediction has learnt of the measured current
+  if (!observer_)  // the prediction of the observer depends on the measured current
   {
     const Compared& judged = torque_driven_ ? now.velocity : now.current;
     lag_.add(now.time, judged.predicted, judged.measured);

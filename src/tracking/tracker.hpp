@@ -21,22 +21,22 @@ namespace hjt
 {
 class Observer;
 
-/// Lag of one signal of a stream behind another: the lag with the largest cross-correlation.
+/// Lag of one signal behind another: the lag with the largest cross-correlation.
 ///
-/// Both signals pass the same high-pass. The products are summed for lags on a grid up to LONGEST to either side, and
-/// forgotten over MEMORY. A parabola through the three largest values gives the lag between the points of the grid.
-/// Memory is fixed; nothing allocates.
+/// Both signals pass the same high-pass filter. The class sums their products for lags on a grid up to LONGEST in both
+/// directions, and forgets them over MEMORY. A parabola through the three largest values gives the lag between two
+/// points of the grid. Nothing allocates.
 class DelayEstimate
 {
 public:
   static constexpr double LONGEST = 0.1;          ///< longest lag [s]
-  static constexpr double GRID = 0.004;           ///< step from one lag to the next [s]
+  static constexpr double GRID = 0.004;           ///< difference between two neighbouring lags [s]
   static constexpr double MEMORY = 20.0;          ///< time constant of forgetting [s]
   static constexpr double MIN_CORRELATION = 0.7;  ///< a smaller correlation gives no lag [-]
 
   void reset() noexcept { *this = DelayEstimate(); }
 
-  /// Adds a row of both signals. `time`: later than that of the row before [s].
+  /// Adds a row of both signals. `time` must be later than in the row before [s].
   void add(double time, double leading, double lagging) noexcept
   {
     const bool first = end_ == begin_ || time > at(end_ - 1).time + MotionDifferentiator::MAX_GAP;
@@ -53,7 +53,8 @@ public:
     rows_[end_ % ROOM] = { time, leading - leading_mean_, lagging - lagging_mean_ };
     ++end_;
 
-    // The lagging signal is that in the middle of the held rows, so that the leading one is known to either side.
+    // The lagging signal is taken in the middle of the held rows, so that the leading signal is known before and after
+    // it.
     const double middle = time - LONGEST;
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
     if (at(oldest).time > middle - LONGEST)
@@ -84,8 +85,8 @@ public:
     }
   }
 
-  /// Lag of the lagging signal; > 0: it comes later [s]. Nothing: the signals are too little alike, or the largest
-  /// correlation is that of the longest lag.
+  /// Lag of the lagging signal [s]; > 0: it comes later. None: the signals differ too much, or the longest lag has the
+  /// largest correlation.
   std::optional<double> lag() const noexcept
   {
     std::size_t best = 0;
@@ -106,10 +107,10 @@ public:
   }
 
 private:
-  static constexpr double MIN_SECONDS = 2.0;  // shorter signals give no lag
+  static constexpr double MIN_SECONDS = 2.0;  // least duration of signals that give a lag [s]
 
   static constexpr std::size_t ROOM = 512;
-  static constexpr int HALF = 25;  // number of lags to either side: LONGEST / GRID
+  static constexpr int HALF = 25;  // number of lags in each direction: LONGEST / GRID
   static constexpr std::size_t LAGS = 2 * HALF + 1;
   static constexpr double SLOWEST = 0.5;  // time constant of the high-pass [s]
 
@@ -128,107 +129,104 @@ private:
   }
 
   std::array<Row, ROOM> rows_{};
-  std::uint64_t begin_{};  // first row of the present stretch
+  std::uint64_t begin_{};  // number of the first row after the last gap
   std::uint64_t end_{};
   double leading_mean_{};
   double lagging_mean_{};
   std::array<double, LAGS> products_{};
   std::array<double, LAGS> leading_power_{};
   double lagging_power_{};
-  double seconds_{};  // time in the sums, less what was forgotten
+  double seconds_{};  // duration of the signals in the sums, which forget old rows [s]
 };
 
-/// One quantity, measured and predicted.
+/// A measured quantity and its prediction.
 struct Compared
 {
   double measured{};
   double predicted{};
-  double band{};  ///< half width of the range in which a healthy joint's residual stays; 0: not known
+  double band{};  ///< half width of the range in which the residual of a sound joint stays; 0: not known
 
   double residual() const noexcept { return measured - predicted; }
 };
 
-/// A healthy joint beside the measured joint at the time of one row of telemetry. The fields are those of
+/// Comparison of a measured joint with a sound joint at the time of one row of telemetry. The fields are those of
 /// Comparison.msg and always finite.
 struct Comparison
 {
-  double time{};                 ///< time of the row [s]
-  Compared position;             ///< angle of the joint [rad]
-  Compared velocity;             ///< speed of the joint [rad/s]
-  Compared current;              ///< current of the motor [A]
-  double joint_torque{};         ///< torque on the arm: the motor's, less friction and the rotor's inertia [N.m]
-  double friction_torque{};      ///< friction of a healthy joint, at the joint, with its sign [N.m]
-  double load_torque{};          ///< whole load at the output in the prediction, > 0 resists positive motion [N.m]
-  bool load_provided{};          ///< a load was received; else weight and inertia are as configured, without a band if
-                                 ///< telemetry.load expects a load
-  double temperature{};          ///< temperature of the grease in the prediction [degC]
-  bool temperature_received{};   ///< that temperature follows from a received one; else it is estimated or configured
-  double housing_temperature{};  ///< temperature near the motor if thermal.model = two_nodes, else of the grease [degC]
-  bool sticking{};               ///< friction holds the joint: any current within the band fits
+  double time{};             ///< time of the row [s]
+  Compared position;         ///< angle of the joint [rad]
+  Compared velocity;         ///< speed of the joint [rad/s]
+  Compared current;          ///< current of the motor [A]
+  double joint_torque{};     ///< torque of the joint on the arm: motor torque - friction - inertia of the rotor [N.m]
+  double friction_torque{};  ///< friction of a sound joint, at the joint, with the sign of the motion [N.m]
+  double load_torque{};      ///< whole load at the output in the prediction; > 0 resists positive motion [N.m]
+  bool load_provided{};      ///< whether a load was received; without it `load_torque` is as configured
+  double temperature{};      ///< temperature of the grease in the prediction [degC]
+  bool temperature_received{};   ///< whether `temperature` follows from a received temperature
+  double housing_temperature{};  ///< temperature near the motor; without thermal.model = two_nodes of the grease [degC]
+  bool sticking{};               ///< whether friction holds the joint: any current within the band is possible
   bool after_gap{};              ///< this row is the first one after a gap in the telemetry
 
-  /// Measured less predicted current as a torque at the joint [N.m].
+  /// Measured - predicted current, as a torque at the joint [N.m].
   double residual_torque{};
   bool isOutside() const noexcept { return std::abs(current.residual()) > current.band && current.band > 0.0; }
 };
 
-/// Counts of the rows that were given.
+/// Numbers of rows and events.
 struct TrackerCounters
 {
   std::uint64_t compared{};              ///< rows with a comparison
   std::uint64_t refused{};               ///< rows that are repeated, out of order, not finite or impossible
   std::uint64_t gaps{};                  ///< gaps longer than MotionDifferentiator::MAX_GAP
-  std::uint64_t restarts{};              ///< times that stamps went back by more than StreamTiming::RESTART
-  std::uint64_t outside{};               ///< comparisons whose current lies outside its band
+  std::uint64_t restarts{};              ///< number of times that stamps went back by more than StreamTiming::RESTART
+  std::uint64_t outside{};               ///< comparisons with a current outside its band
   std::uint64_t without_load{};          ///< comparisons without a received load, though telemetry.load expects one
   std::uint64_t refused_temperatures{};  ///< temperatures that are not finite or impossible
-  std::uint64_t solver_failures{};       ///< steps of the twin in torque mode that did not converge
+  std::uint64_t solver_failures{};       ///< steps of the twin in mode `torque` without convergence
 };
 
-/// The twin beside a robot: it compares rows of telemetry with its prediction and judges the health, in one of the
-/// modes `torque`, `motion` and `observer`. Live and offline the same rows and loads give the same numbers, if a load
-/// comes before the rows that are MotionDifferentiator::HALF_WIDTH later than it. After construction nothing throws or
-/// allocates.
+/// The twin beside a robot: compares rows of telemetry with a prediction, in mode `torque`, `motion` or `observer`, and
+/// judges the health. Live and offline results are equal for equal rows and loads, if each load comes before the rows
+/// that are MotionDifferentiator::HALF_WIDTH later. After construction nothing throws or allocates.
 class Tracker
 {
 public:
-  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< time of forgetting, longer than a contact [s]
+  static constexpr double OUTSIDE_MEMORY = 30.0;  ///< time constant of outsideShare(), longer than a contact [s]
 
-  /// @throws ParameterError where the parameters do not allow the mode; `mode` is not COMMANDS.
+  /// @throws ParameterError if the parameters do not allow the mode. `mode` must not be COMMANDS.
   Tracker(const Parameters& parameters, InputMode mode, const SurfaceSource& surface_source = {});
   ~Tracker();
 
   void reset() noexcept;
 
-  /// `fits` false: the telemetry does not fit together. The health is then not judged, and starts again once the
-  /// telemetry fits.
+  /// `fits`: whether the telemetry fits together. If not, the health is not judged, and starts again when it fits.
   void setFits(bool fits) noexcept;
 
-  /// Sets the load at the output from `time` on: the external or the whole load, as telemetry.load says [N.m]. A number
-  /// that is not finite is refused.
+  /// Sets the load at the output from `time` [s] on: the external or the whole load, as telemetry.load says [N.m].
+  /// Refuses a number that is not finite.
   void pushLoad(double time, double torque) noexcept;
 
-  /// Sets the temperature of the drive from `time` on, for rows without a temperature [degC]. Impossible temperatures
-  /// are refused and counted.
+  /// Sets the temperature of the drive from `time` [s] on, for rows without a temperature [degC]. Refuses and counts
+  /// impossible temperatures.
   void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
-  /// Sets an estimate for rows without a received temperature [degC]; none: the configured temperature.
+  /// Sets the estimated temperature for rows without a received temperature [degC]; none: the configured temperature.
   void setTemperature(std::optional<double> temperature) noexcept { estimated_temperature_ = temperature; }
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// Sets the reference of the joint's signals; without this call the first windows are the reference. Allocates.
+  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. Allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
-  /// Takes a row of telemetry, whose own load does not count. Call pop() afterwards.
+  /// Takes a row of telemetry without its own load. Call pop() afterwards.
   void push(const MotionRow& row) noexcept;
 
   /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until it
   /// returns none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
-  /// Takes the place of push() and pop() for a row whose rates are known, as of ArmLoad. The row must be later than the
-  /// row before, and its values possible. Its own load does not count.
+  /// Replaces push() and pop() for a row with known rates, for example from ArmLoad. The row must be later than the row
+  /// before, and its values possible. Its own load does not count.
   Comparison compare(MotionSample sample) noexcept;
 
   /// Whether the last comparison had a load, or telemetry.load expects none.
@@ -236,21 +234,21 @@ public:
 
   TrackerCounters counters() const noexcept;
 
-  /// Share of the rows whose current lies outside its band, forgotten over OUTSIDE_MEMORY [-].
+  /// Share of the rows with a current outside its band, averaged over OUTSIDE_MEMORY [-].
   double outsideShare() const noexcept { return outside_share_; }
 
   /// Evidence on the measured joint. The evidence is the same in every mode. During a contact the tracker does not
   /// judge the health, and outsideShare does not change. After the contact the health starts again.
   const JointEvidence& evidence() const noexcept { return evidence_; }
 
-  /// Clears the evidence, so that the next verdict is of later rows.
+  /// Clears the evidence, so that only later rows count for the next verdict.
   void forgetEvidence() noexcept { evidence_.forget(); }
 
   /// Lag of a measured signal behind its prediction [s]: of the current in mode `motion`, of the speed in mode
-  /// `torque`. In mode `observer` there is none.
+  /// `torque`. In mode `observer` there is no lag.
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
-  /// Health of the measured joint, from its own signals.
+  /// Indicators of the measured joint, from its own signals.
   const SignalIndicators& signalIndicators() const noexcept { return evidence_.indicators(); }
   const Assessment& assessment() const noexcept { return evidence_.assessor().assessment(); }
 
@@ -259,8 +257,8 @@ private:
   void begin(double time) noexcept;
   Comparison comparisonOf(MotionSample& sample) noexcept;
   std::optional<double> loadAt(double time) const noexcept;
-  // Each fills position, velocity, current and torques of a comparison. `external`: load beside the weight and inertia
-  // that are configured; the sample has the whole [N.m].
+  // Each function fills position, velocity, current and torques of a comparison. `external`: load without the
+  // configured weight and inertia [N.m]. The load of `sample` is the whole load.
   void predictByTorque(const MotionSample& sample, double external, Comparison& now) noexcept;
   void predictByMotion(const MotionSample& sample, Comparison& now) const noexcept;
   void predictByObserver(const MotionSample& sample, double external, Comparison& now) noexcept;
@@ -287,6 +285,6 @@ private:
   double last_compared_{};  // time of the last comparison [s]
   DelayEstimate lag_;
   TrackerCounters counters_;
-  std::uint64_t refused_{};  // rows refused before smoother_, and by it before the last restart
+  std::uint64_t refused_{};  // number of rows refused before smoother_, and by smoother_ before the last restart
 };
 }  // namespace hjt

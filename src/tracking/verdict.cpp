@@ -13,28 +13,28 @@ namespace hjt
 {
 namespace
 {
-/// Mean product of measured and predicted current [A^2].
+/// Mean of the product of measured and predicted current over the rows [A^2].
 double agreement(const JointEvidence& evidence)
 {
   return 0.5 * (std::pow(evidence.currentRms(), 2) + std::pow(evidence.predictedRms(), 2) -
                 std::pow(evidence.residualRms(), 2));
 }
 
-/// Why the recorded current tells nothing of the drive: it is not that of the motor, or the load is another. None: the
-/// current fits.
+/// Says why the recorded current shows nothing of the drive: it is not the current of the motor, or it fits another
+/// load. Returns none if the current fits.
 std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
-  constexpr double MIN_RATIO = 0.02;  // least share of the predicted current, rms
+  constexpr double MIN_RATIO = 0.02;  // least rms of the measured current, over that of the predicted current [-]
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
-  constexpr double SPREAD = 2.0;  // spread of the residual over that of the predicted current; a constant: 0
-  constexpr double AGREES = 0.7;  // correlation of measured and predicted current
+  constexpr double SPREAD = 2.0;  // least spread of the residual over the rms of the predicted current [-]
+  constexpr double AGREES = 0.7;  // least correlation of measured and predicted current [-]
   const double noticeable = 2.0 * evidence.parameters().telemetry.current_deviation;
   const double measured = evidence.currentRms();
   const double predicted = evidence.predictedRms();
   if (evidence.reach().isAtRest() && evidence.friction().points().empty())
   {
-    return std::nullopt;  // stiction holds it at any current
+    return std::nullopt;  // stiction holds the joint at any current
   }
   if (predicted > noticeable && measured < MIN_RATIO * predicted)
   {
@@ -42,9 +42,9 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   }
   if (predicted > noticeable && measured > 0.5 * predicted && -agreement(evidence) > AGREES * measured * predicted)
   {
-    return Reason::EFFORT_NOT_CURRENT;  // of the opposite sign
+    return Reason::EFFORT_NOT_CURRENT;  // the effort has the opposite sign
   }
-  // Spikes, noise and a load from outside are large as well, but not a multiple of the prediction.
+  // Spikes, noise and external loads are large too, but they are no multiple of the prediction.
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
       agreement(evidence) > AGREES * measured * predicted)
   {
@@ -74,14 +74,14 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
     finding.reason = Reason::LOAD_CONSTANT;
     return finding;
   }
-  constexpr double MAX_COMPLIANCE = 20.0;  // no drive is so soft that still turns
+  constexpr double MAX_COMPLIANCE = 20.0;  // largest compliance over the twin's; no softer drive can still turn [-]
   if (compliance < 0.0 || compliance > MAX_COMPLIANCE)
   {
     verdict[Figure::TORSION_OF_TWIN] = compliance;
     finding.reason = Reason::TORSION_NO_DRIVE;
     return finding;
   }
-  // Once a turn an encoder off its axis looks like torsion under a weight. The motor turns often.
+  // An eccentric encoder at the output has the effect of torsion by weight, once per turn. The motor turns many times.
   const double twin = evidence.torsion().twinAmplitude();
   const double turn = evidence.torsion().turnAmplitude();
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
@@ -101,7 +101,7 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
   {
     nameCauses(evidence, ScalarIndicator::TORSIONAL_STIFFNESS, ratio > 1.0 ? -1.0 : 1.0, finding);
   }
-  constexpr double MIN_TURN = 0.01;  // least turn of the joint
+  constexpr double MIN_TURN = 0.01;  // least turnAmplitude() that shows the encoder's error [-]
   if (!is_own_known)
   {
     verdict[Figure::ENCODER_SHARE] = eccentricity;
@@ -157,10 +157,10 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context,
   return finding;
 }
 
-/// Highest order of the motor's turn that the rows resolve at the highest speed [-]; 0: the joint does not move.
+/// Highest order per turn of the motor that the rows resolve at the highest speed [-]; 0: the joint does not move.
 double highestOrder(const JointEvidence& evidence, const Verdict& verdict)
 {
-  constexpr double RESOLVED = 0.4;  // share of the rows' rate; the limit is a half
+  constexpr double RESOLVED = 0.4;  // share of the rows' rate up to which lines are resolved; in theory a half [-]
   const double fastest = std::max(-verdict[Figure::LOWEST_SPEED], verdict[Figure::HIGHEST_SPEED]);
   const double turns = std::abs(fastest * evidence.ratio()) * evidence.reach().sampled / TWO_PI;
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
@@ -206,7 +206,7 @@ void setFigures(const JointEvidence& evidence, const JointContext& context, Verd
   verdict.has_signatures = !evidence.assessor().signatures().signatures.empty();
 }
 
-/// Sets level and reason of the verdict by its findings.
+/// Derives level and reason of the verdict from its findings.
 void sumUp(Verdict& verdict)
 {
   verdict.reason = verdict.findings.front().reason;
@@ -285,7 +285,7 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    // The reference of the joint itself may have the same wrong gain.
+    // The joint's own reference may have the same wrong gain.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);

@@ -18,33 +18,33 @@
 
 namespace hjt
 {
-/// Change of a joint's friction from its own that a verdict ignores, however certain it is. The bound for less friction
-/// is twice as wide, since no fault takes away a fifth of the friction.
+/// Increase of a joint's friction over its own that a verdict ignores, however certain it is [-]. The bound for a
+/// decrease is twice as wide, because no fault takes away a fifth of the friction.
 constexpr double MORE_THAN_OWN = 0.05;
 constexpr double LESS_THAN_OWN = 0.10;
 
-/// Reference of which the friction of a joint is a multiple.
+/// The friction that a friction factor divides by.
 enum class FrictionReference : std::uint8_t
 {
   TWIN,
-  CONTROLLER,  ///< the friction that the arm's controller expects
-  OWN          ///< the joint's own friction when it was sound
+  CONTROLLER,  ///< friction that the arm's controller expects
+  OWN          ///< own friction of the joint when it was sound
 };
 
 const char* referenceName(FrictionReference reference) noexcept;  ///< "controller"
 
-/// Friction of a joint as a multiple of its reference, with its uncertainty (docs/compare.md).
+/// Friction of a joint as a multiple of its reference, with an interval (docs/compare.md).
 struct FrictionFactor
 {
   double value{
     std::numeric_limits<double>::quiet_NaN()
-  };                   ///< the friction factor; NaN: the rows do not show the friction
+  };                   ///< friction factor; NaN: the rows do not show the friction [-]
   double deviation{};  ///< standard deviation of the factor's logarithm [-]
-  double scatter{};    ///< part of `deviation` by the rows' scatter [-]
+  double scatter{};    ///< part of `deviation` by the scatter of the rows [-]
   FrictionReference reference{ FrictionReference::TWIN };
-  bool is_below_faults{};          ///< the friction is less than any fault leaves
-  Reason reason{ Reason::SOUND };  ///< why the friction is not judged; SOUND: it is judged
-  std::string why_not;             ///< that reason in a sentence; empty: the friction is judged
+  bool is_below_faults{};          ///< the joint has less friction than any fault leaves
+  Reason reason{ Reason::SOUND };  ///< reason why the friction is not judged; SOUND: it is judged
+  std::string why_not;             ///< the same reason as a sentence; empty: the friction is judged
 
   bool isJudged() const { return reason == Reason::SOUND; }
   /// Ends of the 95 % interval.
@@ -55,7 +55,7 @@ private:
   double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
-/// Figures of the same joint when it was sound.
+/// Reference of a joint from its own recordings when it was sound.
 struct OwnReference
 {
   std::vector<FrictionPoint> friction;  ///< measured friction by speed; empty: not known
@@ -63,29 +63,28 @@ struct OwnReference
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };                              ///< temperature of the recordings; NaN: not known [degC]
-  double friction_deviation{};    ///< standard deviation of the friction by its scatter, as a share [-]
-  std::size_t recordings{ 1 };    ///< number of recordings of the friction
-  double recordings_deviation{};  ///< standard deviation from one recording to the next, as a share [-]
-  bool is_unjudged{};             ///< there is a recording, but it did not show the joint's friction
+  double friction_deviation{};    ///< standard deviation of the friction by the scatter of the rows, as a share [-]
+  std::size_t recordings{ 1 };    ///< number of recordings that show the friction
+  double recordings_deviation{};  ///< standard deviation of the friction from recording to recording, as a share [-]
+  bool is_unjudged{};             ///< true: there are recordings, but none shows the joint's friction
 };
 
-/// What a verdict on a joint uses beside its evidence.
+/// What a verdict on a joint needs besides its evidence.
 struct JointContext
 {
   OwnReference own;
-  bool is_identified{};  ///< the twin's friction was identified from this joint
-  bool
-      has_controller{};  ///< without `own` the friction is compared with the friction that the arm's controller expects
+  bool is_identified{};   ///< the twin's friction was identified by recordings of this joint
+  bool has_controller{};  ///< true: without `own` the reference is the friction that the arm's controller expects
   /// Common factor of the joints' friction divided by that of the reference [-]. Its cause is temperature or gain, not
   /// a fault.
   double arm_friction{ 1.0 };
   Misfit misfit{};  ///< why the rows of the joint are not judged
-  /// Standard deviation of the logarithm of `arm_friction`; 0 if the other joints of the group confirm the factor.
+  /// Standard deviation of the logarithm of `arm_friction` [-]; 0: other joints of the group confirm the factor.
   double arm_deviation{ UNWITNESSED };
   FittedFriction fitted{};
 };
 
-/// Numbers are those of Verdict.msg; the first three those of HealthLevel.
+/// Level of a verdict. The numbers are those of Verdict.msg, the first three also those of HealthLevel.
 enum class VerdictLevel : std::uint8_t
 {
   OK = 0,
@@ -96,7 +95,7 @@ enum class VerdictLevel : std::uint8_t
 
 const char* levelName(VerdictLevel level) noexcept;  ///< "WARN", "NOT JUDGED"
 
-/// The level as a HealthLevel, which is OK where nothing was judged.
+/// The level as a HealthLevel; OK if nothing was judged.
 inline HealthLevel severityOf(VerdictLevel level)
 {
   return level == VerdictLevel::NOT_JUDGED ? HealthLevel::OK : static_cast<HealthLevel>(level);
@@ -105,55 +104,55 @@ inline HealthLevel severityOf(VerdictLevel level)
 /// A number behind a verdict.
 enum class Figure : std::uint8_t
 {
-  ROWS,                    ///< all rows
-  TOUCHED_ROWS,            ///< rows left out because something touched the arm
+  ROWS,                    ///< number of all rows
+  TOUCHED_ROWS,            ///< number of rows that do not count, because something touched the arm
   SPAN,                    ///< time from the first to the last row [s]
   CURRENT,                 ///< measured current, rms [A]
   CURRENT_PREDICTED,       ///< predicted current, rms [A]
-  CURRENT_RESIDUAL,        ///< measured less predicted current, rms [A]
-  CURRENT_UNEXPLAINED,     ///< residual less the best constant and the best multiple of the friction, rms [A]
+  CURRENT_RESIDUAL,        ///< measured - predicted current, rms [A]
+  CURRENT_UNEXPLAINED,     ///< residual without the best constant and the best multiple of the friction, rms [A]
   LEAST_LOAD,              ///< least load [N.m]
   MOST_LOAD,               ///< largest load [N.m]
   TEMPERATURE,             ///< mean temperature of the rows [degC]
   REFERENCE_TEMPERATURE,   ///< temperature of the joint's own reference [degC]
-  HIGHEST_ORDER,           ///< order of the motor's turn that the rows resolve at the highest speed [-]
+  HIGHEST_ORDER,           ///< highest order per turn of the motor that the rows resolve at the highest speed [-]
   SPEEDS,                  ///< number of speeds at which the friction was measured [-]
-  LOWEST_SPEED,            ///< lowest of these speeds, with its sign [rad/s]
-  HIGHEST_SPEED,           ///< highest of these speeds, with its sign [rad/s]
-  FRICTION_OF_TWIN,        ///< friction over the twin's [-]
+  LOWEST_SPEED,            ///< lowest speed with a friction point, with its sign [rad/s]
+  HIGHEST_SPEED,           ///< highest speed with a friction point, with its sign [rad/s]
+  FRICTION_OF_TWIN,        ///< friction over the twin's friction [-]
   FRICTION_OF_CONTROLLER,  ///< friction over the friction that the arm's controller expects [-]
-  FRICTION_OF_OWN,         ///< friction over the joint's own when it was sound [-]
+  FRICTION_OF_OWN,         ///< friction over the joint's own friction when it was sound [-]
   FRICTION_OF_ARM,         ///< common factor of the friction of all joints of the arm [-]
   FRICTION_SCATTER,        ///< standard deviation of the friction's logarithm by the scatter of the rows [-]
   FRICTION_LOWEST,         ///< lowest friction of a sound joint, over the reference [-]
   FRICTION_HIGHEST,        ///< highest friction of a sound joint, over the reference [-]
-  TORSION_OF_TWIN,         ///< torsion over the twin's [-]
-  TORSION_OF_OWN,          ///< torsion over the drive's own when it was sound [-]
-  TORSION_TOLERANCE,       ///< deviation from 1 that the torsion of a sound drive may have [-]
-  ENCODER_SHARE,           ///< part of that tolerance for the encoders' eccentricity [-]
+  TORSION_OF_TWIN,         ///< torsion over the twin's torsion [-]
+  TORSION_OF_OWN,          ///< torsion over the drive's own torsion when it was sound [-]
+  TORSION_TOLERANCE,       ///< largest deviation of a sound drive's torsion from 1 [-]
+  ENCODER_SHARE,           ///< part of the tolerance of the torsion for eccentric encoders [-]
   ENCODER_ERROR,  ///< error of the output encoder once a turn that would have the effect of the found torsion [rad]
   ENCODER_ECCENTRICITY,    ///< configured eccentricity of the output encoder [rad]
-  WINDOWS,                 ///< windows of the signals that were compared [-]
-  WINDOWS_HERE,            ///< windows at one operating point, if they are too few [-]
-  WINDOWS_NEEDED,          ///< windows that a verdict needs at one operating point [-]
-  ALARM_TIME,              ///< time from which on the signals depart from the reference [s]
+  WINDOWS,                 ///< number of windows of the signals that were compared [-]
+  WINDOWS_HERE,            ///< number of windows at one operating point, if there are too few [-]
+  WINDOWS_NEEDED,          ///< number of windows at one operating point that a verdict needs [-]
+  ALARM_TIME,              ///< time from which on the signals differ from the reference [s]
   CONTACT_SINCE,           ///< beginning of the last contact [s]
   CONTACT_LASTED,          ///< duration of the last contact [s]
   CONTACT_TORQUE,          ///< largest torque of the last contact [N.m]
   LARGEST_CONTACT_SINCE,   ///< beginning of the strongest contact [s]
   LARGEST_CONTACT_LASTED,  ///< duration of the strongest contact [s]
-  LARGEST_CONTACT_TORQUE   ///< torque of the strongest contact [N.m]
+  LARGEST_CONTACT_TORQUE   ///< largest torque of the strongest contact [N.m]
 };
 constexpr std::size_t FIGURE_COUNT = 38;
 
-/// A kind of fault as a possible cause.
+/// A kind of fault that may be the cause of a finding.
 struct WeightedCause
 {
   Cause cause{};
-  double weight{};  ///< share of the windows in alarm that name it, or an equal share for causes that look alike [-]
+  double weight{};  ///< share of the windows in alarm that name the cause, or an equal share for each cause [-]
 };
 
-/// Quantities of a joint that are judged.
+/// Quantities of a joint on which a verdict has findings.
 enum class FindingSubject
 {
   FRICTION,
@@ -167,48 +166,48 @@ struct Finding
 {
   FindingSubject subject{};
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  Reason reason{};                    ///< SOUND at level OK
-  std::vector<WeightedCause> causes;  ///< faults that have this effect; none at level OK
+  Reason reason{};                    ///< reason of the level; SOUND at level OK
+  std::vector<WeightedCause> causes;  ///< faults with the effect that was found; empty at level OK
 };
 
-/// Friction of the joint as a multiple of its FrictionReference, and in an arm of the joints' common factor too.
+/// Friction of a joint over its reference, and in an arm also over the common factor of the joints.
 struct JudgedFriction
 {
-  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< friction over the reference's; NaN: not measured [-]
-  double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of its interval [-]
-  double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of its interval [-]
+  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< friction over the reference; NaN: not measured [-]
+  double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of the interval of `factor` [-]
+  double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of the interval of `factor` [-]
   bool has_interval{};
 };
 
-/// Verdict on a measured joint: its findings as data. `verdictText` and `findingText` make the sentences.
+/// Verdict on a measured joint: its findings as data. `verdictText` and `findingText` turn them into sentences.
 struct Verdict
 {
   Verdict() { figures.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   bool isJudged() const { return level != VerdictLevel::NOT_JUDGED; }
   double operator[](Figure figure) const { return figures[static_cast<std::size_t>(figure)]; }  ///< NaN: not known
-  /// Changes the verdict to one in which nothing is judged.
+  /// Changes all findings and the verdict to NOT_JUDGED.
   void dismiss(const Misfit& why_not);
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding; if none is judged, of the first
+  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding, or of the first if none is judged
   std::string joint;
   JudgedFriction friction;
-  std::string friction_text;             ///< sentences on the friction, or why it is not judged
+  std::string friction_text;             ///< sentences on the friction, or on why it is not judged
   std::vector<Finding> findings;         ///< findings on friction, torsion and signals
-  std::vector<Evidence> evidence;        ///< evidence of the worst window of the signals, strongest first
+  std::vector<Evidence> evidence;        ///< evidence of the worst window of the signals, the strongest evidence first
   std::vector<std::string> cannot_show;  ///< sentences on what these rows cannot show
-  bool may_be_gain{};                    ///< a wrong gain would show like the friction that departs
-  bool fits{ true };                     ///< false: telemetry or load are why nothing is judged
-  std::string misfit;                    ///< clause on why nothing is judged; empty: none
+  bool may_be_gain{};                    ///< a wrong gain could have the effect of the friction that departs
+  bool fits{ true };                     ///< false: nothing is judged, because telemetry or load are wrong
+  std::string misfit;                    ///< clause that says why nothing is judged; empty: no such reason
   LoadOrigin load{};
-  bool is_reference_given{};  ///< whether the signals have a given reference
-  bool has_signatures{};      ///< signatures of faults are known, so that causes can be named
+  bool is_reference_given{};  ///< whether the user gave a reference of the signals
+  bool has_signatures{};      ///< whether signatures of faults are known, so that findings can name causes
   std::array<double, FIGURE_COUNT> figures{};
 };
 
-/// Causes of all findings, each kind of fault once, the one with the largest weight first.
+/// Causes of all findings, each once, in the order of their weights, the largest first.
 std::vector<WeightedCause> causesOf(const Verdict& verdict);
 
 /// A number with its name and unit.
@@ -219,46 +218,45 @@ struct NamedFigure
   const char* unit;
 };
 
-/// The known figures of a verdict, and the indicators of its evidence with their sound values.
+/// The known figures of a verdict, and the indicators of its evidence with their values in a sound joint.
 std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
 
-// Sentences for people and documents.
+// Functions that return sentences for messages and documents.
 std::string verdictText(const Verdict& verdict);
 std::string findingText(const Verdict& verdict, const Finding& finding);
-/// The rows of the evidence cannot show these things. `verdict`: with its figures.
+/// Sentences on what the rows of the evidence cannot show. `verdict` must have its figures already.
 std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict);
 
-/// Sentence on the causes of a finding; empty: without signatures of faults nothing is known of them.
+/// Sentence on the causes of a finding; empty: no signatures of faults are known.
 std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 
-/// A clause as a sentence.
+/// Makes a sentence of a clause.
 std::string sentence(std::string clause);
 
-/// WARN if the magnitude of `deviation` is larger than `tolerance`, ERROR if it is larger than `error_factor` times
-/// that.
+/// WARN if the magnitude of `deviation` exceeds `tolerance`, ERROR if it exceeds `tolerance` times `error_factor`.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
 Verdict judge(const JointEvidence& evidence, const JointContext& context);
 
-/// Source of the temperature of a joint, in a word.
+/// One word for the source of a joint's temperature.
 inline const char* temperatureSource(const JointEvidence& evidence)
 {
   return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// Friction of the rows as a multiple of its FrictionReference. The evidence must outlive the result.
+/// Friction of the rows as a multiple of its reference. The evidence must outlive the result.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
 
 /// "1.18 [1.05, 1.32]"
 std::string factorText(const FrictionFactor& factor);
 std::string factorText(const JudgedFriction& friction);
 
-/// Whether the friction that an arm's controller expects can be the reference: the friction of most joints agrees with
-/// it, so that it is that of sound joints.
+/// Whether the friction that the arm's controller expects can be the reference: it agrees with that of most joints, so
+/// it belongs to sound joints.
 bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
 
-/// Standard deviation of a sound joint's friction from its own earlier friction, apart from the common factor of its
-/// group, as a share [-]. `friction` [N.m]
+/// Standard deviation of a sound joint's friction from its own earlier friction, as a share, apart from the common
+/// factor of its group [-]. `friction`: friction of the joint [N.m].
 double repeatOfOwn(double friction);
 
 /// Friction factor of the rows in the evidence.
@@ -268,25 +266,24 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
 struct SoundFriction
 {
   std::vector<FrictionPoint> points;
-  double deviation{};  ///< standard deviation by the scatter of the rows, as a share [-]
+  double deviation{};  ///< standard deviation of the friction by the scatter of the rows, as a share [-]
 };
 
-/// Reference of several recordings: the mean friction at each speed, and how much the recordings differ. Without
-/// recordings the reference is not known.
+/// Makes a reference of several recordings: mean friction at each speed, and difference between the recordings. Without
+/// recordings the reference is empty.
 OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
-/// Judges the friction: WARN if the whole interval lies beyond the bound. Puts factor, text and figures into the
-/// verdict.
+/// Judges the friction: WARN if its whole interval lies beyond the bound. Sets factor, text and figures of the verdict.
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
 
-/// Adds the faults that move the indicator in the direction `way`, +1 or -1, to the finding.
+/// Adds the faults that move the indicator in the direction `way`, +1 or -1, to the causes of the finding.
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
 
-/// Clause on a load that does not fit the joint.
+/// Clause that says how the load may be wrong.
 const char* wrongLoad(LoadOrigin load);
 
-/// Distinguishes a wrong gain of the current from friction. With a wrong gain the current of load and inertia departs
-/// from the prediction by the same factor as the friction does.
+/// Distinguishes a wrong gain of the current from a change of friction. With a wrong gain the current for load and
+/// inertia departs from the prediction by the same factor as that for friction.
 struct GainEvidence
 {
   explicit GainEvidence(const JointEvidence& evidence)
@@ -294,19 +291,19 @@ struct GainEvidence
   {
   }
 
-  /// The friction departs alone, so the gain is right.
+  /// Whether only the friction departs, so that the gain is right.
   bool isExcluded() const
   {
     return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
   }
 
-  /// The factor of the friction is nearer to that of the load than to 1. If not, another load is as likely as a gain.
+  /// Whether the factor of the friction is nearer to that of the load than to 1. If not, a wrong load is as likely.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
-  /// Misfit by a wrong gain; none: both factors do not depart alike, or the load tells too little.
+  /// Misfit by a wrong gain; none if both factors do not depart alike, or if the load is too small to show its factor.
   Misfit misfit() const
   {
-    constexpr double NOTEWORTHY = 0.2;  // gains of one type differ by less
+    constexpr double NOTEWORTHY = 0.2;  // least deviation of a gain that counts; gains of one type deviate by less [-]
     if (!(load.value > 0.0 && isAlike()) ||
         std::abs(load.value - 1.0) < std::max(NOTEWORTHY, DEVIATIONS * load.uncertainty))
     {

@@ -41,7 +41,7 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
          "telemetry.torque_per_current is wrong.";
 }
 
-/// Sentence on why torsion or signals, or all findings, are not judged.
+/// Sentence that says why torsion, signals or all findings are not judged.
 std::string reasonText(const Verdict& verdict, Reason reason)
 {
   switch (reason)
@@ -83,7 +83,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       return "The load is unknown.";
     case Reason::TELEMETRY_UNSETTLED:
       return "It is not known yet whether angles and efforts fit together.";
-    default:  // the clause of the misfit says it
+    default:  // the clause of the misfit is the reason
       break;
   }
   return sentence(verdict.misfit);
@@ -94,7 +94,7 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
   const double to_own = verdict[Figure::TORSION_OF_OWN];
   const bool known = std::isfinite(to_own);
   const double value = known ? to_own : verdict[Figure::TORSION_OF_TWIN];
-  // As many digits as it takes to see on which side of the bound the value lies.
+  // Enough digits to show on which side of the bound the value lies.
   const double lowest = std::max(0.0, 1.0 - verdict[Figure::TORSION_TOLERANCE]);
   const double highest = 1.0 + verdict[Figure::TORSION_TOLERANCE];
   int digits = 2;
@@ -165,7 +165,7 @@ struct FigureEntry
   const char* unit;
 };
 
-/// In the order of Figure.
+/// Names and units of the figures, in the order of Figure.
 constexpr std::array<FigureEntry, FIGURE_COUNT> FIGURES{ { { "rows", "-" },
                                                            { "rows_touched", "-" },
                                                            { "span", "s" },
@@ -205,7 +205,7 @@ constexpr std::array<FigureEntry, FIGURE_COUNT> FIGURES{ { { "rows", "-" },
                                                            { "largest_contact_lasted", "s" },
                                                            { "largest_contact_torque", "N.m" } } };
 
-/// In the order of Reason.
+/// Names of the reasons, in the order of Reason.
 constexpr std::array<const char*, REASON_COUNT> REASONS{ "SOUND",
                                                          "FRICTION",
                                                          "TORSION",
@@ -318,7 +318,7 @@ std::string verdictText(const Verdict& verdict)
 
 std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict)
 {
-  constexpr double MIN_LOADING = 0.035;  // share of the largest load: what a load that varies less hides
+  constexpr double MIN_LOADING = 0.035;  // range of the load that shows its effects, over the largest load [-]
   const MotionReach& reach = evidence.reach();
   const double speeds = verdict[Figure::SPEEDS];
   const bool is_both_ways = verdict[Figure::LOWEST_SPEED] < 0.0 && verdict[Figure::HIGHEST_SPEED] > 0.0;

@@ -11,16 +11,16 @@
 
 namespace hjt
 {
-/// The verdict on a measured joint while its rows come. The verdict is of the rows of half an hour. Then the rows start
-/// again, and the last verdict stands until there is another one. A worse verdict counts only after CONFIRMED_AFTER,
-/// because the first rows of a motion are few.
+/// The verdict on a measured joint while its rows arrive. After half an hour the evidence starts again, and the last
+/// verdict stands until the new rows give one. A worse verdict counts only after CONFIRMED_AFTER, because the first
+/// rows of a motion are few.
 class VerdictWatch
 {
 public:
-  /// `tracker`: must outlive this object. `known`: the reference of the joint.
+  /// `tracker` must outlive this object. `known`: the reference of the joint.
   VerdictWatch(Tracker& tracker, JointContext known) : tracker_(tracker), known_(std::move(known)) {}
 
-  /// Sets the misfit of the telemetry; none: it fits, or it is not yet `settled` whether it fits.
+  /// Sets the misfit of the telemetry; empty: the telemetry fits. `settled`: false while this is not known yet.
   void setMisfit(const Misfit& misfit, bool settled)
   {
     misfit_ = misfit;
@@ -30,11 +30,10 @@ public:
   const Misfit& misfit() const { return misfit_; }
   void setFitted(const FittedFriction& friction) { known_.fitted = friction; }
 
-  /// Friction of the rows that the verdict is of, as `joint_twin compare` measures it.
+  /// Friction of the rows of the present evidence, as `joint_twin compare` measures it.
   MeasuredFriction measuredFriction() const { return hjt::measuredFriction(tracker_.evidence(), context()); }
 
-  /// Rows without a received temperature are predicted at the temperature that explains the friction of all joints, if
-  /// that is known.
+  /// Sets the temperature for rows without a received temperature: that which explains the friction of all joints.
   void predictAt(const ArmFriction& arm)
   {
     if (arm.is_known)
@@ -43,12 +42,12 @@ public:
     }
   }
 
-  /// Makes the verdict again, without other joints.
+  /// Judges the present evidence without the other joints.
   void judge() { judge(context()); }
-  /// Makes the verdict again with the common factors of all joints. `joint`: number of this joint.
+  /// Judges the present evidence with the common factors of all joints. `joint`: number of this joint.
   void judge(const ArmFriction& arm, std::size_t joint) { judge(context(&arm, joint)); }
 
-  /// Why nothing is judged at the moment; none: the joint is judged.
+  /// Why the joint is not judged at the moment; none: it is judged.
   std::optional<Misfit> whyNotJudged() const
   {
     if (misfit_.exists())
@@ -67,10 +66,10 @@ public:
 
   double lastRow() const { return last_row_; }  ///< time of the last row that was judged [s]
 
-  /// The verdict that stands.
+  /// The present verdict.
   const Verdict& confirmed() const { return confirmed_; }
 
-  /// The verdict that stands, or one that says why nothing is judged at the moment.
+  /// The present verdict, or a verdict that says why the joint is not judged at the moment.
   Verdict now() const
   {
     Verdict verdict = confirmed_;
@@ -89,7 +88,7 @@ private:
   static constexpr double JUDGED_SPAN = 1800.0;    // [s]
   static constexpr double CONFIRMED_AFTER = 10.0;  // [s]
 
-  /// `arm`: what the joints have in common, of which this is number `joint`; nullptr: not known.
+  /// `arm`: common factors of the joints; nullptr: not known. `joint`: number of this joint.
   JointContext context(const ArmFriction* arm = nullptr, std::size_t joint = 0) const
   {
     JointContext context = known_;
@@ -103,10 +102,10 @@ private:
   {
     const MotionReach& reach = tracker_.evidence().reach();
     last_row_ = reach.end;
-    const bool is_new = confirmed_at_ > reach.end;  // the telemetry started again
+    const bool is_new = confirmed_at_ > reach.end;  // whether the telemetry started again
     Verdict verdict = hjt::judge(tracker_.evidence(), context);
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
-    // A misfit that the rows show replaces a verdict as a worse verdict does. Too few rows replace none.
+    // A misfit that the rows show replaces the verdict only as a worse verdict does. Too few rows replace no verdict.
     const bool is_other =
         !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
                           verdict.reason == Reason::NO_FRICTION || context.misfit.exists() ||
@@ -131,10 +130,10 @@ private:
   bool settled_{ true };
   double last_row_{};  // [s]
   Verdict confirmed_;
-  double confirmed_at_{};  // last time at which no worse verdict was found [s]
+  double confirmed_at_{};  // time of the last row with a verdict that was not worse [s]
 };
 
-/// The function commonFriction for the joints of these verdicts.
+/// commonFriction() for the joints of these verdicts.
 inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   std::vector<MeasuredFriction> frictions;
@@ -145,7 +144,7 @@ inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, doub
   return commonFriction(frictions, tolerance);
 }
 
-/// Judges each joint with the common factors of all, as `joint_twin compare` judges a recording.
+/// Judges each joint with the common factors of all joints, as `joint_twin compare` judges a recording.
 inline ArmFriction judgeTogether(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   const ArmFriction arm = commonFriction(joints, tolerance);
