@@ -156,15 +156,15 @@ ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double t
   if (number(&MeasuredFriction::is_against) >= SEVERAL)
   {
     arm.misfit = { Reason::EFFORT_NOT_CURRENT,
-                   "the efforts of several joints go against the currents that their motion takes: efforts or angles "
-                   "are of the opposite sign" };
+                   "the efforts of several joints have the opposite sign of the currents that their motion needs: the "
+                   "sign of the efforts or of the angles is wrong" };
   }
   else if (number(&MeasuredFriction::is_none) >= SEVERAL &&
            number(&MeasuredFriction::is_none) == number(&MeasuredFriction::is_below_faults))
   {
     arm.misfit = { Reason::NO_FRICTION,
-                   "the efforts of several joints show no friction: they are modelled or commanded torques, not "
-                   "measured ones" };
+                   "the efforts of several joints show no friction: the efforts are modelled or commanded torques, not "
+                   "measured torques" };
   }
   else if (number(&MeasuredFriction::is_below_faults) >= SEVERAL)
   {

@@ -32,8 +32,8 @@ double largestLoad(const Parameters& parameters)
   if (!(largest > 0.0))
   {
     throw ParameterError(
-        "motor.torque_limit and output.load_torque_limit are both 0: there is no range of loads to "
-        "tabulate the friction over");
+        "motor.torque_limit and output.load_torque_limit are both 0, so the table of the friction has "
+        "no range of loads");
   }
   return largest;
 }

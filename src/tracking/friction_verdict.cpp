@@ -54,7 +54,7 @@ struct ReferenceRow
 /// The references, in the order of FrictionReference.
 constexpr std::array<ReferenceRow, 3> REFERENCES{
   { { "twin", "the twin's", Figure::FRICTION_OF_TWIN },
-    { "controller", "what the arm's controller expects", Figure::FRICTION_OF_CONTROLLER },
+    { "controller", "the friction that the arm's controller expects", Figure::FRICTION_OF_CONTROLLER },
     { "own", "this joint's own when it was sound", Figure::FRICTION_OF_OWN } }
 };
 
@@ -77,7 +77,7 @@ using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
-                                (evidence.reach().touched_rows > 0 ? " apart from contact" : "") +
+                                (evidence.reach().touched_rows > 0 ? " without a contact" : "") +
                                 (is_to_own ? " and are in the reference too" : "");
   if (points.empty() && evidence.reach().isAtRest())
   {
@@ -94,8 +94,7 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   if (!(points.front().speed < 0.0 && points.back().speed > 0.0))
   {
     return { Reason::ONE_DIRECTION,
-             "Friction and load cannot be separated, because the joint moves in one direction only at all speeds that" +
-                 have_rows + "." };
+             "Friction and load cannot be separated, because all speeds that" + have_rows + " are in one direction." };
   }
   if (points.size() < MIN_POINTS)
   {
@@ -117,22 +116,22 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
   {
     return { Reason::EFFORT_NOT_CURRENT, "The measured friction is " + fixedText(factor.value, 2) +
-                                             " times the expected one, so it would push the joint along: the effort or "
-                                             "the angle of this joint has the opposite sign." };
+                                             " times the expected friction and would push the joint along: the effort "
+                                             "or the angle of this joint has the wrong sign." };
   }
   if (factor.is_below_faults && std::abs(factor.value) < NO_FRICTION)
   {
     return { Reason::NO_FRICTION,
              "The effort shows no friction (" + fixedText(factor.value, 2) +
-                 " times the expected one): the effort is a modelled or commanded torque, or something else carries "
-                 "the joint." };
+                 " times the expected friction): the effort is a modelled or commanded torque, or something else "
+                 "carries the joint." };
   }
   if (factor.is_below_faults)
   {
     return { Reason::LESS_THAN_FAULTS,
              "The friction is " + factorText(factor) +
-                 " times the expected one, and no fault leaves so little: a hand leads or holds the arm, or the gain, "
-                 "the ratio or a sign is not as configured." };
+                 " times the expected friction, less than any fault leaves: a hand leads or holds the arm, or the "
+                 "gain, the ratio or a sign is not as configured." };
   }
   if (const double way = impossibleWay(points); way != 0.0)
   {
@@ -143,7 +142,8 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   if (!(factor.high() < factor.value * std::exp(WIDEST)))
   {
     return { Reason::FRICTION_SCATTER, "The rows scatter too much to measure the friction (" + factorText(factor) +
-                                           " times the expected one): too few rows are steady, or " + wrongLoad(load) };
+                                           " times the expected friction): too few rows are steady, or " +
+                                           wrongLoad(load) };
   }
   return { Reason::SOUND, "" };
 }
@@ -229,12 +229,12 @@ const char* wrongLoad(LoadOrigin load)
     case LoadOrigin::CONFIGURED:
       break;
     case LoadOrigin::RECORDED:
-      return "the load is not the one that was recorded.";
+      return "the load differs from the recorded load.";
     case LoadOrigin::ARM:
       return "the load is not that of the arm's links and payload, something touched the arm, or angles, stamps or "
              "currents are disturbed.";
   }
-  return "the load is not the one that is configured. Give the load of the whole arm (docs/arm.md), or record it.";
+  return "the load is not as configured. Give the load of the whole arm (docs/arm.md), or record the load.";
 }
 
 const char* referenceName(FrictionReference reference) noexcept
@@ -292,29 +292,31 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
   std::string text =
       "Friction is " + factorText(verdict.friction) + " times " +
       REFERENCES[static_cast<std::size_t>(factor.reference)].text +
-      (is_fitted     ? " in a fit of the currents of all joints, apart from what they share" :
+      (is_fitted     ? " in a fit of the currents of all joints, apart from their common factor" :
        shared == 1.0 ? "" :
-                       ", apart from the " + fixedText(shared, 2) + " times that the arm's joints share") +
+                       ", apart from the common factor " + fixedText(shared, 2) + " of the arm's joints") +
       " (an interval that reaches into " + fixedText(verdict[Figure::FRICTION_LOWEST], 2) + " to " +
       fixedText(verdict[Figure::FRICTION_HIGHEST], 2) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
-    text += possibleFaults(verdict, finding) + " Other causes: grease at another temperature, another preload" +
+    text += possibleFaults(verdict, finding) +
+            " Other possible causes: another temperature of the grease, another preload" +
             (verdict.may_be_gain ? ", or a wrong gain, which the load shows too little to exclude." : ".");
   }
   if (context.own.is_unjudged)
   {
     text += " The reference did not judge this joint's friction, so it is compared with the twin's.";
   }
-  text += " At " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
+  text += " The joint has " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   text += std::isfinite(context.own.temperature) ?
-              ", the reference at " + fixedText(context.own.temperature, 0) +
-                  " degC; the twin's law of friction makes up for the difference." :
+              ", the reference " + fixedText(context.own.temperature, 0) +
+                  " degC; the twin's law of friction compensates for the difference." :
               ".";
-  return verdict[Figure::SPEEDS] > 0.0 ? text + " Measured at " + fixedText(verdict[Figure::SPEEDS], 0) +
-                                             " speeds from " + fixedText(verdict[Figure::LOWEST_SPEED], 2) + " to " +
-                                             fixedText(verdict[Figure::HIGHEST_SPEED], 2) + " rad/s." :
-                                         text;
+  return verdict[Figure::SPEEDS] > 0.0 ?
+             text + " Its friction was measured at " + fixedText(verdict[Figure::SPEEDS], 0) + " speeds from " +
+                 fixedText(verdict[Figure::LOWEST_SPEED], 2) + " to " + fixedText(verdict[Figure::HIGHEST_SPEED], 2) +
+                 " rad/s." :
+             text;
 }
 }  // namespace
 
@@ -350,8 +352,8 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   {
     finding.reason = Reason::COMMON_FRICTION;
     verdict.friction_text = "The friction of the whole arm is " + fixedText(context.arm_friction, 2) +
-                            " times the reference's. No temperature explains so much: the gain or the unit of the "
-                            "currents is not as configured.";
+                            " times that of the reference. No temperature explains this factor: the gain or the unit "
+                            "of the currents is not as configured.";
     return finding;
   }
   const bool is_to_twin = factor.reference == FrictionReference::TWIN;

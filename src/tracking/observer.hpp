@@ -65,10 +65,9 @@ struct Observation
   double output_velocity{};  ///< [rad/s]
   double joint_torque{};     ///< torque in the gear, at the output [N.m]
   double friction_torque{};  ///< friction of a sound joint at the motor, with the sign of the motion [N.m]
-  double
-      residual_torque{};   ///< torque at the motor, beyond that of a healthy joint, that explains the measurement [N.m]
-  double residual_band{};  ///< three standard deviations of a sound joint's residual with the configured noise [N.m]
-  double innovation{};     ///< measured - predicted output angle [rad]
+  double residual_torque{};  ///< torque at the motor beyond that of a sound joint, which explains the measurement [N.m]
+  double residual_band{};    ///< three standard deviations of a sound joint's residual with the configured noise [N.m]
+  double innovation{};       ///< measured - predicted output angle [rad]
   double innovation_band{};  ///< three standard deviations of the innovation [rad]
   bool sticking{};  ///< friction holds the motor: the residual then says nothing, because any torque within it fits
 };

@@ -47,9 +47,9 @@ Tracker::Tracker(const Parameters& parameters, InputMode mode, const SurfaceSour
   {
     throw ParameterError(
         std::string("telemetry.load = ") + (load_source_ == LoadSource::ARM ? "arm" : "target_moment") +
-        " holds the weight already, but output.gravity_torque = " + numberText(parameters.output.gravity_torque) +
-        " [N.m]: without a recorded load take telemetry.load = model, with it config/recorded_load.yaml after the "
-        "joint's own file");
+        " contains the weight already, but output.gravity_torque = " + numberText(parameters.output.gravity_torque) +
+        " [N.m]. Without a recorded load set telemetry.load = model. With a recorded load add "
+        "config/recorded_load.yaml after the joint's own file");
   }
   torque_driven_ = mode == InputMode::TORQUE ? std::make_unique<TorqueDriven>(parameters, surface_source) : nullptr;
   observer_ = mode == InputMode::OBSERVER ? std::make_unique<Observer>(parameters) : nullptr;

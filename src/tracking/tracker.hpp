@@ -159,9 +159,9 @@ struct Comparison
   Compared current;          ///< current of the motor [A]
   double joint_torque{};     ///< torque of the joint on the arm: motor torque - friction - inertia of the rotor [N.m]
   double friction_torque{};  ///< friction of a sound joint, at the joint, with the sign of the motion [N.m]
-  double load_torque{};      ///< whole load at the output in the prediction; > 0 resists positive motion [N.m]
-  bool load_provided{};      ///< whether a load was received; without it `load_torque` is as configured
-  double temperature{};      ///< temperature of the grease in the prediction [degC]
+  double load_torque{};  ///< whole load of the prediction, received or configured; > 0 resists positive motion [N.m]
+  bool load_provided{};  ///< a load was received; without one that telemetry.load expects the current has no band
+  double temperature{};  ///< temperature of the grease in the prediction [degC]
   bool temperature_received{};   ///< whether `temperature` follows from a received temperature
   double housing_temperature{};  ///< temperature near the motor; without thermal.model = two_nodes of the grease [degC]
   bool sticking{};               ///< whether friction holds the joint: any current within the band is possible

@@ -310,8 +310,8 @@ struct GainEvidence
       return {};
     }
     return { Reason::EFFORT_UNIT, "the current is " + roundedText(load.value, 2) +
-                                      " times what load and inertia take, and " + roundedText(friction, 2) +
-                                      " times what friction takes: not the friction but the gain "
+                                      " times the current that load and inertia need, and " + roundedText(friction, 2) +
+                                      " times the current that friction needs: the gain "
                                       "(telemetry.torque_per_current) or the unit is not as configured" };
   }
 

@@ -30,14 +30,14 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
   {
     if (current > 0.5 * predicted)
     {
-      return "The recorded effort goes against the current that this motion takes: the effort or the angle of this "
-             "joint has the opposite sign, or its load (mounting, payload) is not as configured.";
+      return "The recorded effort has the opposite sign of the current that this motion needs: the sign of effort or "
+             "angle is wrong, or the load (mounting, payload) is not as configured.";
     }
-    return "The recorded effort is " + fixedText(current, 2) + " A rms where this motion takes some " +
+    return "The recorded effort is " + fixedText(current, 2) + " A rms, but this motion needs some " +
            fixedText(predicted, 2) + " A: the effort is not the motor's current.";
   }
   return "The recorded effort is " + fixedText(current / predicted, 1) +
-         " times the current that this motion takes: the effort is in N.m in place of A, or "
+         " times the current that this motion needs: the effort is in N.m in place of A, or "
          "telemetry.torque_per_current is wrong.";
 }
 
@@ -51,10 +51,9 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       {
         break;
       }
-      return "Of a current of " + fixedText(verdict[Figure::CURRENT], 2) + " A rms, " +
-             fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
-             " A follow neither from the prediction nor from another friction or a constant load: " +
-             wrongLoad(verdict.load);
+      return "The current is " + fixedText(verdict[Figure::CURRENT], 2) + " A rms. The prediction, another friction " +
+             "and a constant load do not explain " + fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
+             " A rms of it: " + wrongLoad(verdict.load);
     case Reason::EFFORT_NOT_CURRENT:
     case Reason::EFFORT_TOO_LARGE:
       return wrongEffortText(verdict[Figure::CURRENT], verdict[Figure::CURRENT_PREDICTED], reason);
@@ -66,23 +65,23 @@ std::string reasonText(const Verdict& verdict, Reason reason)
     case Reason::LOAD_CONSTANT:
       return "The load hardly varies, so the stiffness of the drive cannot be measured.";
     case Reason::TOO_FEW_WINDOWS:
-      return "Too few windows: a verdict needs " + whole(verdict[Figure::WINDOWS_NEEDED]) +
-             " at one operating point, and the recording has " + whole(verdict[Figure::WINDOWS_HERE]) + ".";
+      return "A verdict needs " + whole(verdict[Figure::WINDOWS_NEEDED]) +
+             " windows at one operating point, but the recording has " + whole(verdict[Figure::WINDOWS_HERE]) + ".";
     case Reason::NO_REFERENCE:
-      return "No window of the recording is at an operating point that the reference knows.";
+      return "No window of the recording is at an operating point of the reference.";
     case Reason::TOO_SHORT:
-      return "No reference was given, and the recording is too short to learn one (" +
-             whole(verdict[Figure::WINDOWS_NEEDED]) + " windows at one operating point).";
+      return "No reference was given, and the recording is too short to learn a reference, which needs " +
+             whole(verdict[Figure::WINDOWS_NEEDED]) + " windows at one operating point.";
     case Reason::TORSION_NO_DRIVE:
       return "The torsion is " + fixedText(verdict[Figure::TORSION_OF_TWIN], 2) +
-             " times the twin's, which no fault explains: the load or the angles are not those of this joint, or a "
-             "sign is wrong.";
+             " times that of the twin, which no fault explains: the load or the angles are not those of this joint, "
+             "or a sign is wrong.";
     case Reason::SOLVER_FAILED:
-      return "The solver did not converge: the last good state is held.";
+      return "The solver did not converge, so the twin holds its last good state.";
     case Reason::LOAD_UNKNOWN:
       return "The load is unknown.";
     case Reason::TELEMETRY_UNSETTLED:
-      return "It is not known yet whether angles and efforts fit together.";
+      return "The program does not know yet whether angles and efforts fit together.";
     default:  // the clause of the misfit is the reason
       break;
   }
@@ -109,14 +108,14 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
                      " (" + fixedText(lowest, digits) + " to " + fixedText(highest, digits) + " counts as sound).";
   if (finding.level != VerdictLevel::OK)
   {
-    text += possibleFaults(verdict, finding) + " Other causes: a wrong load, eccentric encoders.";
+    text += possibleFaults(verdict, finding) + " Other possible causes: a wrong load, eccentric encoders.";
   }
   const double alike = verdict[Figure::ENCODER_ERROR];
   const double share = verdict[Figure::ENCODER_SHARE];
   if (std::isfinite(alike) && finding.level != VerdictLevel::OK)
   {
     text += " An error of the output encoder once a turn, of amplitude " + fixedText(1e3 * alike, 2) +
-            " mrad or more, would look the same: sensors.output_eccentricity is " +
+            " mrad or more, would have the same effect: sensors.output_eccentricity is " +
             fixedText(1e3 * verdict[Figure::ENCODER_ECCENTRICITY], 2) + " mrad.";
   }
   if (share > 0.01)
@@ -136,12 +135,12 @@ std::string signalsText(const Verdict& verdict, const Finding& finding)
   if (finding.level == VerdictLevel::OK)
   {
     return whole(verdict[Figure::WINDOWS]) + " windows were compared with " + reference +
-           ": none is out of the ordinary.";
+           ", and no window differs from it by more than sound windows do.";
   }
   std::string text =
       "From " + fixedText(verdict[Figure::ALARM_TIME], 1) + " s on the signals depart from " + reference +
-      (finding.causes.empty() ? ", cause not known" : ". Most likely cause: " + causeNames(finding, ", ")) +
-      ". Strongest: ";
+      (finding.causes.empty() ? ". The cause is not known" : ". The likeliest cause is " + causeNames(finding, ", ")) +
+      ". The strongest deviations are: ";
   const auto describe = [](const Evidence& evidence)
   {
     return std::string(indicatorName(evidence.indicator)) + ' ' + roundedText(evidence.value, 3) + ' ' +
@@ -246,7 +245,7 @@ constexpr std::array<const char*, REASON_COUNT> REASONS{ "SOUND",
 std::string possibleFaults(const Verdict& verdict, const Finding& finding)
 {
   return !verdict.has_signatures ? "" :
-         finding.causes.empty()  ? " No fault in the list has this effect." :
+         finding.causes.empty()  ? " No fault that the program knows has this effect." :
                                    " Possible faults: " + causeNames(finding, ", ") + ".";
 }
 
@@ -298,8 +297,7 @@ std::string verdictText(const Verdict& verdict)
     if (severityOf(finding.level) != HealthLevel::OK)
     {
       departing.push_back(
-          title + " (" +
-          (finding.causes.empty() ? "no fault in the list causes this change" : causeNames(finding, " or ")) +
+          title + " (" + (finding.causes.empty() ? "no known fault causes this change" : causeNames(finding, " or ")) +
           (finding.subject == FindingSubject::FRICTION && verdict.may_be_gain ? ", or a wrong gain" : "") + ")");
     }
     else
@@ -332,34 +330,34 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
     }
   };
   add(reach.motor_rows == 0,
-      "Torsion, stiffness, lost motion, kinematic error and ratcheting: the recording has one angle for each joint, "
-      "and the motor's is needed too.");
+      "Torsion, stiffness, lost motion, kinematic error and ratcheting. The recording has one angle for each joint, "
+      "but the motor's is needed too.");
   add(evidence.loadOrigin() == LoadOrigin::ARM,
-      "Whether the payload is as configured, and whether something presses on the arm all the time: no torque was "
-      "recorded, and without it both look like current.");
+      "Whether the payload is as configured, and whether something presses on the arm all the time. No torque was "
+      "recorded, and both only change the current.");
   add(evidence.loadOrigin() == LoadOrigin::CONFIGURED,
-      "Whether the load is as configured: no load was recorded, so the twin uses the configured weight and inertia. A "
-      "payload that the configuration lacks looks like current.");
+      "Whether the load is as configured, because no load was recorded. The twin uses the configured weight and "
+      "inertia. A payload that the configuration lacks only changes the current.");
   add(!evidence.isTemperatureReceived(),
-      "Whether the temperature changed the friction: no temperature was recorded, and each kelvin changes the "
+      "Whether the temperature changed the friction, because no temperature was recorded. Each kelvin changes the "
       "friction of the grease by some per cent.");
   add(!evidence.baselineGiven(),
-      "A fault that was there from the first window, unless its effect is larger than the differences between sound "
-      "joints of one kind: no reference of this joint was given.");
+      "A fault that existed from the first window, because no reference of this joint was given. An effect larger "
+      "than the differences between sound joints of one kind shows nevertheless.");
   add(reach.touched_rows > 0,
       "What the joint did during a contact and shortly after it: " + whole(verdict[Figure::TOUCHED_ROWS]) + " of " +
-          whole(verdict[Figure::ROWS]) + " rows are left out. In the strongest contact " +
+          whole(verdict[Figure::ROWS]) + " rows do not count. In the strongest contact " +
           contactText(evidence.contact().largest()) + ".");
   add(speeds > 0.0 && !is_both_ways,
-      "Whether friction or a wrong load explains the current: the joint moves one way only.");
-  add(speeds < 3.0, "How friction depends on the speed: the rows have fewer than three speeds.");
+      "Whether friction or a wrong load explains the current, because the joint moves one way only.");
+  add(speeds < 3.0, "How friction depends on the speed, because the rows have fewer than three speeds.");
   add(loading < MIN_LOADING * evidence.parameters().output.load_torque_limit,
-      "What shows under load only, such as stiffness and cracks: the load varies by no more than " +
+      "Faults that show under load only, such as softening and cracks, because the load varies by no more than " +
           fixedText(loading, 1) + " N.m.");
   add(verdict[Figure::HIGHEST_ORDER] > 0.0,
       "Lines above order " + fixedText(verdict[Figure::HIGHEST_ORDER], 1) +
-          " of the motor's turn at the highest speed: the recording has too few rows in a turn to show such lines. "
-          "Slower motion would show more of them.");
+          " per turn of the motor at the highest speed, because the recording has too few rows in a turn. Slower "
+          "motion would show more of these lines.");
   return texts;
 }
 

@@ -223,7 +223,7 @@ TEST_F(FrictionVerdict, WhatTheControllerExpectsIsAReferenceWhereMostJointsAgree
   EXPECT_EQ(judged(worn, verdict), VerdictLevel::WARN);
   EXPECT_NEAR(verdict.friction.factor, 1.3, 0.01);
   EXPECT_NEAR(verdict[Figure::FRICTION_OF_CONTROLLER], 1.3, 0.01);
-  EXPECT_THAT(verdict.friction_text, HasSubstr("times what the arm's controller expects"));
+  EXPECT_THAT(verdict.friction_text, HasSubstr("times the friction that the arm's controller expects"));
   EXPECT_EQ(judged(unknown, verdict), VerdictLevel::NOT_JUDGED);
   context.own = ownReference({ this->sound() });
   EXPECT_EQ(frictionFactor(worn, context).reference, FrictionReference::OWN);

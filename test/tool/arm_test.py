@@ -178,7 +178,7 @@ class Arm(ArmTest):
             self.assertAlmostEqual(joint["friction_ratio"], 1.0, delta=0.05, msg=joint)
         with open(self.path("cold/elbow/comparison.json")) as file:
             text = file.read()
-        self.assertIn("At 15 degC (received), the reference at 40 degC", text)
+        self.assertIn("The joint has 15 degC (received), the reference 40 degC", text)
         self.assertNotIn("no temperature was recorded", text)
 
     def test_temperatures_follow_the_recording_and_bad_ones_are_never_used(self):

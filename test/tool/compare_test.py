@@ -272,7 +272,7 @@ class HiddenFault(tool.ToolTest):
         self.assertLessEqual(set(self.causes(report, "Signals by windows")), {"bearing_outer_race"})
         self.assertEqual(report["verdict"]["level"], "ERROR")
         signals = next(found for found in report["verdict"]["findings"] if found["title"] == "Signals by windows")
-        self.assertRegex(signals["text"], "Strongest: (error|ripple|torque)_outer")
+        self.assertRegex(signals["text"], "The strongest deviations are: (error|ripple|torque)_outer")
 
 
 def write_telemetry(path, duration, faults=True):

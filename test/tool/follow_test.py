@@ -89,7 +89,7 @@ class Follow(tool.ToolTest):
     def test_what_cannot_be_is_refused_with_its_reason(self):
         self.fail_with(2, ["--mode"], "follow", "a.bag", *OPTIONS, "--mode", "guess")
         weight = ["follow", "a.bag", "--joint", JOINT, "--config", "joints/elbow.yaml", "--mode", "observer"]
-        self.fail_with(1, ["output.gravity_torque", "without a recorded load take telemetry.load = model",
+        self.fail_with(1, ["output.gravity_torque", "Without a recorded load set telemetry.load = model",
                            "recorded_load.yaml"], *weight, "--set", "telemetry.load=target_moment")
         self.succeed(*weight)  # as shipped: joint states are enough
         self.fail_with(1, [JOINT], "follow", "a.bag", "--joint", "shoulder_joint")
@@ -140,7 +140,7 @@ class SoundJoint(tool.ToolTest):
         ratio, level, text = self.compare("not_configured", *options)
         self.assertAlmostEqual(ratio, 0.51, delta=0.05)
         self.assertEqual(level, "WARN")
-        least = 1e-3 * float(re.search(r"amplitude ([0-9.]+) mrad or more, would look the same: "
+        least = 1e-3 * float(re.search(r"amplitude ([0-9.]+) mrad or more, would have the same effect: "
                                        r"sensors.output_eccentricity is 0.00 mrad", text).group(1))
         self.assertGreater(least, 0.75 * self.ECCENTRICITY)
         self.assertLess(least, self.ECCENTRICITY)
