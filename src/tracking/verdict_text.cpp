@@ -51,9 +51,10 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       {
         break;
       }
-      return "The current is " + fixedText(verdict[Figure::CURRENT], 2) + " A rms. The prediction, another friction " +
-             "and a constant load do not explain " + fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) +
-             " A rms of it: " + wrongLoad(verdict.load);
+      return "The current is " + fixedText(verdict[Figure::CURRENT], 2) +
+             " A rms. The prediction, another friction "
+             "and a constant load do not explain " +
+             fixedText(verdict[Figure::CURRENT_UNEXPLAINED], 2) + " A rms of it: " + wrongLoad(verdict.load);
     case Reason::EFFORT_NOT_CURRENT:
     case Reason::EFFORT_TOO_LARGE:
       return wrongEffortText(verdict[Figure::CURRENT], verdict[Figure::CURRENT_PREDICTED], reason);
