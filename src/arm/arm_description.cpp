@@ -120,7 +120,7 @@ private:
                                     [&](const auto& before) { return before.second == name; });
     if (!isBaseName(name))
     {
-      fields_.refuse(key, "a name: a letter, then letters, digits and underscores");
+      fields_.refuse(key, "a name of letters, digits and underscores that begins with a letter");
     }
     else if (other != short_names_.end())
     {

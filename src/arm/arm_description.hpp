@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// Gains of the control of one joint, all seen from the joint.
+/// Gains of the controller of one joint. All quantities are those at the joint.
 struct JointGains
 {
   double position{};       ///< speed that the controller demands per error of the joint angle [1/s]
@@ -27,8 +27,8 @@ struct ArmJoint
 {
   std::string name;                   ///< name of the joint in messages and in the URDF
   std::string short_name;             ///< unique name of the joint in files and namespaces
-  std::vector<std::string> overlays;  ///< configuration files of the drive; later files win
-  ParameterMap parameters;            ///< parameters of the drive that win over the overlays
+  std::vector<std::string> overlays;  ///< configuration files of the drive; later files replace values of earlier ones
+  ParameterMap parameters;            ///< parameters of the drive, which replace values of the overlays
   Range angles{ -100.0, 100.0 };      ///< range of the angle in the URDF; 16 turns to each side without limits [rad]
   double speed_limit{};               ///< largest speed of the joint; 0: not given [rad/s]
   double torque_limit{};              ///< largest torque at the output; 0: not given [N.m]
@@ -74,7 +74,7 @@ struct ArmLink
   std::array<double, 6> inertia{};   ///< inertia of the link about its centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
 };
 
-/// An arm as its YAML file describes it, and the URDF that the file names.
+/// An arm: the contents of its YAML file and of the URDF that this file names.
 struct ArmDescription
 {
   std::string origin;               ///< path of the YAML file, for error texts

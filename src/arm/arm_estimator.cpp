@@ -40,7 +40,7 @@ enum OwnTerm : int
 constexpr double NEVER = 1e-6;   // width of the prior of a term that the estimator does not consider
 constexpr double STUDENT = 4.0;  // degrees of freedom of Student's t distribution for the errors of the rows
 constexpr int STARTS = 4;
-constexpr int HELD = -1;  // a start with all priors at full weight
+constexpr int HELD = -1;  // number of a start with all priors at full weight
 
 int groupOf(std::size_t joint)
 {

@@ -28,8 +28,8 @@ namespace hjt
 class ArmEstimator
 {
 public:
-  static constexpr int PAYLOAD = 4;  ///< terms of the payload: its mass and three moments
-  static constexpr int GRAVITY = 3;  ///< terms of the change of gravity
+  static constexpr int PAYLOAD = 4;  ///< number of terms of the payload: its mass and three moments
+  static constexpr int GRAVITY = 3;  ///< number of terms of the change of gravity
   static constexpr int DRAG = PAYLOAD + GRAVITY;
   static constexpr int LOAD = DRAG + 1;
   using Load = Eigen::Matrix<double, LOAD, 1>;
@@ -98,7 +98,7 @@ public:
   struct Freedom
   {
     bool mounting{};
-    bool jump{};  ///< the payload may change between legs
+    bool jump{};  ///< whether the payload may change between legs
     bool drag{};
   };
   /// Returns the likeliest estimate with one payload. If the payload may change, and some legs have another payload,

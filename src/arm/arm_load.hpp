@@ -29,7 +29,7 @@ namespace hjt
 class RowTimes
 {
 public:
-  static constexpr double ANGLE = 1e-4;  ///< standard deviation of an angle's change from its velocity's integral [rad]
+  static constexpr double ANGLE = 1e-4;  ///< standard deviation: change of an angle - integral of its velocity [rad]
   static constexpr double STAMP = 4e-3;  ///< standard deviation of a stamp's interval [s]
   static constexpr double SIGNIFICANT = 0.35;  ///< least error that counts, as a share of the stamps' interval [-]
   static constexpr double AGREES = 0.1;  ///< largest share by which velocities and changes of angle may differ [-]
@@ -60,7 +60,7 @@ private:
     double change{ START };
     double expected{ START };
   };
-  static constexpr double MEMORY = 10.0;  // time constant of the forgetting [s]
+  static constexpr double MEMORY = 10.0;  // time constant with which the sums forget old rows [s]
   static constexpr double START = 0.25;   // first value of both sums: that of 1 s at 0.5 rad/s [rad^2/s]
 
   /// Time from the last rows to `rows` [s]: by the motion if it clearly contradicts the stamps, else by the stamps.

@@ -18,7 +18,7 @@ struct ArmSetPoint
   std::vector<JointMotion> joints;  ///< motion of all joints
 };
 
-/// Accelerations between set points.
+/// Source of the accelerations between two set points.
 enum class ArmAccelerations : std::uint8_t
 {
   GIVEN,     ///< linear between the accelerations of the set points, for set points that lie close together

@@ -26,7 +26,7 @@ struct ArmFit
   /// type [-]
   double size{ 1.0 };
   double left{};  ///< share of the moving joints' currents that the best payload and mounting do not explain, rms [-]
-  double cost{};  ///< negative logarithm of a likelihood [-]
+  double cost{};  ///< negative logarithm of the likelihood of the rows with this arm [-]
 
   bool operator<(const ArmFit& other) const { return cost < other.cost; }
   /// Whether this arm explains the currents, and its cost is lower than that of `other` by more than `by`.
@@ -54,8 +54,9 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
 
 /// A function that ranks the arms of these names, the best first.
 using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
-/// Name of the arm that explains the rows so much better than `own` that it contradicts `own`; empty if there is none.
-/// `names` contains `own`. No other arm is tried if `own` explains the rows so well that none could contradict it.
+/// Name of the arm that explains the rows so much better than `own` that it contradicts `own`; empty: there is none.
+/// `names` contains `own`. The function tries no other arm if `own` explains the rows so well that none can contradict
+/// it.
 std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank);
 
 /// The clause "the arm may be a ur5e, which explains ...".

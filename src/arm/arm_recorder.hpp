@@ -31,7 +31,7 @@ inline constexpr std::array<ArmQuantity, 10> ARM_QUANTITIES{ {
     { "actual_qd", "rad/s", "speed by the encoder at the motor, over the ratio", false },
     { "actual_current", "A", "current of the motor", false },
     { "target_TCP_pose", "m", "position of the tool by the set point, in the frame of the base", true },
-    { "actual_TCP_pose", "m", "position of the tool, true, in the frame of the base", true },
+    { "actual_TCP_pose", "m", "true position of the tool in the frame of the base", true },
 } };
 enum ArmQuantityIndex : std::size_t
 {

@@ -20,7 +20,7 @@ struct ArmCoupling
   int order{ 1 };  ///< order of the polynomial that extrapolates the other drives' torques, 0 to 2; 0: the last torques
 };
 
-/// The drives of an arm, each a Twin, coupled by the rigid-body dynamics of its links:
+/// The drives of an arm, each a Twin, coupled by the dynamics of its links. For angles q, speeds v, accelerations a:
 ///
 ///   (M(q) + D) a = tau - h(q, v)
 ///

@@ -21,7 +21,7 @@ namespace hjt
 {
 /// Finds payload and mounting from an arm's currents while the rows arrive. The class evaluates the rows after every
 /// 30 s of motion. After eight minutes of motion it starts with new rows, and it uses only rows since the last change
-/// of the payload. It tries a found load for 10 s of motion (LoadLaw). If the trial fails, the class searches no load
+/// of the payload. It tries a found load for 10 s of motion (LoadLaw). If the trial fails, the class looks for no load
 /// during the next eight minutes of motion. An evaluation takes some tenths of a second in a thread of its own. The
 /// class allocates and is not for a real-time loop.
 class LoadWatch
@@ -84,7 +84,7 @@ private:
 class ArmWatch
 {
 public:
-  /// Makes the arms to rank, `own` among them. The thread that ranks the arms calls this function.
+  /// A function that makes the arms to rank, `own` among them. It runs in the thread that ranks them.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
   /// `own`: name of the given arm. `unit_is_given`: whether the efforts certainly have the configured unit.

@@ -138,7 +138,7 @@ bool LoadFit::isDrawn(std::size_t number, double share)
   return turns - std::floor(turns) < share;
 }
 
-/// Removes half of the rows if there are more than enough.
+/// Removes half of the rows if a joint has more than ENOUGH rows.
 void LoadFit::thin()
 {
   constexpr std::size_t ENOUGH = 6000;  // number of rows of a joint in ten minutes
@@ -257,7 +257,7 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   return rows;
 }
 
-/// Mass at the tip that loads the joint most loaded by the tip as much as 2 % of the links' masses do [kg].
+/// Mass at the tip with the same effect as 2 % of the links' masses, on the joint that the tip loads most [kg].
 double LoadFit::ofLinks(const std::vector<bool>& counts) const
 {
   constexpr double LINKS_SHARE = 0.02;

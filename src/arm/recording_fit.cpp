@@ -26,7 +26,7 @@ constexpr double WIDE = 2.0;          // largest factor that a payload or anothe
 constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; a larger one shows another unit [-]
 constexpr double LAG_OFF = 0.05;      // least lag of the velocity that counts [s]
 constexpr std::uint64_t MIN_ROWS = 100;
-constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays the same [s]
+constexpr double UNCHANGED = 2.0;       // longest motion without a change of a measured current [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty, because simulated data may have none
 
 /// Text on the lag of currents behind their motion, such as "0.2 s later". `longest`: longest lag of the fit [s].
@@ -359,7 +359,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   if (std::optional<RecordingFinding> times = ofTimes())
   {
     findings.push_back(std::move(*times));
-    return findings;  // the load is wrong too
+    return findings;  // with wrong times the load is wrong too
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {

@@ -32,10 +32,10 @@ const char* effortKeyword(EffortUnit unit);
 /// A contradiction in a recording of an arm, or a fact that limits what it shows.
 struct RecordingFinding
 {
-  std::string kind;  ///< name in JSON: reading, period, stamps, ratio, angle_unit, effort_unit, gain, current_lag,
-                     ///< effort_constant, velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag,
-                     ///< no_velocity, at_rest
-  std::string text;  ///< a clause without a full stop
+  /// Name in JSON files: reading, period, stamps, ratio, angle_unit, effort_unit, gain, current_lag, effort_constant,
+  /// velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag, no_velocity or at_rest.
+  std::string kind;
+  std::string text;             ///< the finding as a clause without a full stop
   std::optional<Reason> stops;  ///< reason why the finding prevents a verdict; none: it does not prevent a verdict
 };
 

@@ -69,12 +69,12 @@ private:
   {
     Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // velocity of the place [m/s]
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // velocity of `place` [m/s]
     Eigen::Vector3d speed = Eigen::Vector3d::Zero();         // angular velocity [rad/s]
     Eigen::Vector3d turning = Eigen::Vector3d::Zero();       // angular acceleration [rad/s^2]
-    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // acceleration of the place [m/s^2]
+    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // acceleration of `place` [m/s^2]
 
-    /// Acceleration of a point at `arm` from the place, less that of the place.
+    /// Acceleration of a point at the distance `arm` from `place`, minus the acceleration of `place` [m/s^2].
     Eigen::Vector3d swing(const Eigen::Vector3d& arm) const
     {
       return turning.cross(arm) + speed.cross(speed.cross(arm));
@@ -86,10 +86,10 @@ private:
   Motion walk(const std::vector<JointMotion>& motion, const Visit& visit);
 
   std::vector<Link> links_;
-  std::vector<Joint> joints_;  // joints as the last walk found them
+  std::vector<Joint> joints_;  // joints in the pose of the last walk along the links
   Payload payload_;
   Eigen::Vector3d gravity_;
-  Eigen::Matrix<double, 3, 2> across_;  // directions across gravity, where no payload weighs
+  Eigen::Matrix<double, 3, 2> across_;  // two directions across gravity, in which a payload has no weight
   double drag_;
 };
 }  // namespace hjt

@@ -51,7 +51,7 @@ FittedFactor LoadRegression::slope(double& content) const
 
 namespace
 {
-constexpr double NOTEWORTHY = 0.06;  // a shorter lag changes no verdict [s]
+constexpr double NOTEWORTHY = 0.06;  // least lag that counts; a shorter lag changes no verdict [s]
 constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
 }  // namespace
 
@@ -64,7 +64,7 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
     best = left[i] < left[best] ? i : best;
   }
   const double lag = CurrentLag::lagAt(best);
-  constexpr double LONG = 0.1;  // a shorter lag has the same effect as friction at low speed [s]
+  constexpr double LONG = 0.1;  // least lag that counts; a shorter lag has the effect of friction at low speed [s]
   return std::abs(lag) > LONG && std::sqrt(left[best] / left[MIDDLE]) < CLEARLY ? lag : 0.0;
 }
 

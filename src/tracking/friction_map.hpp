@@ -17,7 +17,7 @@ struct FrictionShares
   double grease{};   ///< bearing, by speed; above 2000 mm^2/s rpm proportional to bearing.viscosity to the power of 2/3
   double flanks{};   ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
   double rest{};  ///< bearing by the wave generator's load, outer race, rim, cup, Coulomb friction of motor and output
-  double stribeck{};  ///< rise at the motor shaft towards standstill; proportional to motor.stribeck_torque
+  double stribeck{};  ///< rise of the friction towards standstill; proportional to motor.stribeck_torque
   double viscous{};   ///< friction of motor and output proportional to the speed
 
   double sum() const noexcept { return preload + grease + flanks + rest + stribeck + viscous; }

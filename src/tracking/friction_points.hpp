@@ -20,7 +20,7 @@ struct FrictionPoint
 {
   double speed{};      ///< speed, > 0 in positive direction [rad/s]
   double measured{};   ///< measured friction [N.m]
-  double deviation{};  ///< standard deviation of the measured rows [N.m]
+  double deviation{};  ///< standard deviation of the measured friction from row to row [N.m]
   double twin{};       ///< mean friction of the twin in the same rows [N.m]
   std::uint64_t rows{};
   double load{};  ///< mean load, > 0 resists positive motion [N.m]
@@ -29,7 +29,7 @@ struct FrictionPoint
 /// Measured friction over the friction of a reference.
 struct FrictionRatio
 {
-  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: joint and reference have no speed in common
+  double value{ std::numeric_limits<double>::quiet_NaN() };  ///< measured over reference friction; NaN: not known [-]
   double deviation{};                 ///< standard deviation of `value` by the scatter of the rows [-]
   double of_points{};                 ///< standard deviation of `value` by leaving out one speed after the other [-]
   std::vector<FrictionPoint> points;  ///< points at the speeds of both; `twin` holds the friction of the reference
@@ -119,7 +119,7 @@ private:
 class FrictionPoints
 {
 public:
-  static constexpr std::uint64_t MIN_ROWS = 30;  ///< fewer rows make no point
+  static constexpr std::uint64_t MIN_ROWS = 30;  ///< least number of rows of a point
   static constexpr double SLOWEST = 0.01;        ///< rows with slower motion do not count [rad/s]
 
   /// Adds a row. `time` [s]; `speed` [rad/s] and `load` [N.m] with sign; `measured`, `twin`: friction, > 0 against the

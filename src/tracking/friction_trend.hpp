@@ -35,7 +35,7 @@ struct FrictionTrend
   double slope{
     std::numeric_limits<double>::quiet_NaN()
   };                   ///< slope of the logarithm per unit of time; NaN: not known
-  double deviation{};  ///< standard deviation of the slope
+  double deviation{};  ///< standard deviation of the slope, in 1 / unit of time
 
   bool isKnown() const { return std::isfinite(slope); }
 

@@ -275,7 +275,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
   factor.value = ratio.value;
   factor.deviation = deviationOf(ratio, evidence.friction().blocks(), context, factor.reference);
   factor.scatter = ratio.deviation / std::max(std::abs(ratio.value), NO_FRICTION);
-  constexpr double SURE = 2.0;  // number of standard deviations
+  constexpr double SURE = 2.0;  // number of standard deviations by which the factor must be below 1 [-]
   factor.is_below_faults = factor.value / context.arm_friction < LEAST_OF_FAULTS &&
                            factor.value + SURE * factor.deviation * std::max(factor.value, NO_FRICTION) < 1.0;
   std::tie(factor.reason, factor.why_not) = whyImpossible(factor, ratio.points, evidence.loadOrigin());
@@ -301,7 +301,7 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
   {
     text += possibleFaults(verdict, finding) +
             " Other possible causes: another temperature of the grease, another preload" +
-            (verdict.may_be_gain ? ", or a wrong gain, which the load shows too little to exclude." : ".");
+            (verdict.may_be_gain ? ", or a wrong gain, because the load varies too little to exclude it." : ".");
   }
   if (context.own.is_unjudged)
   {

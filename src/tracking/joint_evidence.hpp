@@ -280,7 +280,7 @@ private:
 
   double largest_load_;
   double time_{};
-  int way_{};                     // +1, -1; 0: at rest
+  int way_{};                     // direction of motion, +1 or -1; 0: at rest
   double moved_{};                // time of motion in the direction way_ [s]
   double mean_{};                 // mean difference between residual and usual residual [N.m]
   double beyond_{};               // time for which the mean difference has exceeded its bound [s]

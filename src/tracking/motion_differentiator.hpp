@@ -57,7 +57,7 @@ public:
   static constexpr double MOVING = 0.02;       ///< speed below which noise of the angles may be the reason [rad/s]
   static constexpr double SLIDING = 0.05;  ///< speed below which the motion shows little of friction and load [rad/s]
 
-  /// @param half_width up to 0.12 [s]
+  /// `half_width`: half width of the window of a fit, at most 0.12 [s].
   explicit MotionDifferentiator(double half_width = HALF_WIDTH) noexcept : half_width_(half_width) {}
 
   /// Takes a row. Returns false and drops the row if it is not later than the row before, or not finite.

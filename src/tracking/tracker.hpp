@@ -31,8 +31,8 @@ class DelayEstimate
 public:
   static constexpr double LONGEST = 0.1;          ///< longest lag [s]
   static constexpr double GRID = 0.004;           ///< difference between two neighbouring lags [s]
-  static constexpr double MEMORY = 20.0;          ///< time constant of forgetting [s]
-  static constexpr double MIN_CORRELATION = 0.7;  ///< a smaller correlation gives no lag [-]
+  static constexpr double MEMORY = 20.0;          ///< time constant with which the sums forget old rows [s]
+  static constexpr double MIN_CORRELATION = 0.7;  ///< least correlation that gives a lag [-]
 
   void reset() noexcept { *this = DelayEstimate(); }
 
@@ -272,8 +272,8 @@ private:
   double temperature_;                           // temperature of the grease at the last row [degC]
   std::optional<double> estimated_temperature_;  // estimate for rows without a received temperature [degC]
   JointEvidence evidence_;
-  std::unique_ptr<TorqueDriven> torque_driven_;  // null except in mode TORQUE
-  std::unique_ptr<Observer> observer_;           // null except in mode OBSERVER
+  std::unique_ptr<TorqueDriven> torque_driven_;  // null in all modes except TORQUE
+  std::unique_ptr<Observer> observer_;           // null in all modes except OBSERVER
   MotionDifferentiator smoother_;
   bool restarted_{};
   bool fits_{ true };

@@ -261,7 +261,8 @@ constexpr Case BAD_VALUES[] = {
   { "check_up: [0.0, -0.35,", "check_up: [100.0, -0.35,", "allowed: -6.283185307179586 ... 6.283185307179586 [rad]" },
   { "check_up: [0.0, -0.35,", "check_up: [-0.35,", "must be a list of 6 numbers [rad]" },
   { "short_name: base", "short_name: 'a b'",
-    "arm.yaml:28: joints.0.short_name = 'a b' must be a name: a letter, then letters, digits and underscores" },
+    "arm.yaml:28: joints.0.short_name = 'a b' must be a name of letters, digits and underscores that begins with a "
+    "letter" },
   { "short_name: base", "short_name: ../../../escaped", "joints.0.short_name = '../../../escaped' must be a name" },
   { "short_name: shoulder", "short_name: base",
     "arm.yaml:35: joints.1.short_name = 'base' must be another than joints.0.short_name" },
