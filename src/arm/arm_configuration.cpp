@@ -41,7 +41,7 @@ std::string findArm(const std::string& name, const fs::path& directory)
   const fs::path shipped = directory / "arms" / (mainName(name, directory) + ".yaml");
   if (!fs::exists(shipped, error))
   {
-    throw ParameterError("arm " + name + ": neither a file nor an arm in " + shipped.parent_path().string());
+    throw ParameterError("arm " + name + " is neither a file nor an arm in " + shipped.parent_path().string());
   }
   return shipped.string();
 }
@@ -207,7 +207,7 @@ void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& fau
     const std::optional<std::size_t> joint = findJoint(arm, fault.substr(0, colon));
     if (colon == std::string::npos || !joint)
     {
-      throw ParameterError("fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], JOINT one of " +
+      throw ParameterError("fault " + fault + ": expected JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is one of " +
                            shortNames(arm));
     }
     of_joints[*joint].faults.push_back(fault.substr(colon + 1));

@@ -84,7 +84,7 @@ public:
     if (isMapOrNone(place + ".limits") && holds(map_, place + ".limits"))
     {
       fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "greatest speed");
-      fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "greatest torque at the output");
+      fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "largest torque at the output");
       if (holds(map_, place + ".limits.feedback"))
       {
         fields_(place + ".limits.feedback", "N.m", joint.feedback_limit, Range{ 1e-3, 1e6 },
@@ -261,7 +261,7 @@ void requireMasses(const ArmDescription& arm, const KDL::Chain& chain)
   {
     if (moved != nullptr && mass == 0.0)
     {
-      throw ParameterError(arm.origin + ": its URDF: link '" + moved->getName() + "', which joint '" +
+      throw ParameterError(arm.origin + ": in its URDF link '" + moved->getName() + "', which joint '" +
                            moved->getJoint().getName() +
                            "' moves, has no mass: it needs <inertial> with <mass value=\"KILOGRAMS\"/> above 0");
     }
@@ -296,8 +296,8 @@ void requirePlausible(const ArmDescription& arm, const KDL::Segment& segment)
   {
     if (!good)
     {
-      throw ParameterError(arm.origin + ": its URDF: joint '" + joint.getName() + "' with link '" + segment.getName() +
-                           "': " + what);
+      throw ParameterError(arm.origin + ": in its URDF joint '" + joint.getName() + "' with link '" +
+                           segment.getName() + "': " + what);
     }
   };
   // The comparisons are false for NaN, so the function refuses NaN.
@@ -443,7 +443,8 @@ ArmDescription readArmDescription(const std::string& path)
          "centre of mass of the payload in the frame of the tip");
   if (holds(map, "state_rate"))
   {
-    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 }, "rate of the controller's states");
+    fields("state_rate", "Hz", arm.state_rate, Range{ 1.0, 1000.0 },
+           "rate at which the controller publishes its states");
   }
   const auto place = [](std::size_t joint) { return "joints." + std::to_string(joint); };
   std::size_t joints = 0;

@@ -60,10 +60,10 @@ void requireDrive(const ArmDescription& arm, std::size_t joint, const std::vecto
     }
   };
   require(drive.solver.rate == drives.front().solver.rate, "solver.rate = " + numberText(drive.solver.rate) +
-                                                               " Hz is not that of the first joint, " +
+                                                               " Hz differs from that of the first joint, " +
                                                                numberText(drives.front().solver.rate) + " Hz");
   require(drive.output.gravity_torque == 0.0, "output.gravity_torque = " + numberText(drive.output.gravity_torque) +
-                                                  " N.m would count the weight twice: 0 within an arm");
+                                                  " N.m would count the weight twice: it must be 0 in an arm");
 }
 }  // namespace
 
@@ -79,7 +79,7 @@ ArmTwin::ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, cons
   const std::size_t joints = arm.joints.size();
   if (drives.size() != joints || start.size() != joints)
   {
-    throw ParameterError(arm.origin + " has " + std::to_string(joints) + " joints; given are " +
+    throw ParameterError(arm.origin + " has " + std::to_string(joints) + " joints, but the caller gave " +
                          std::to_string(drives.size()) + " drives and " + std::to_string(start.size()) + " angles");
   }
   for (std::size_t i = 0; i < joints; ++i)

@@ -199,9 +199,9 @@ std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint
   if (ratio < SAME_RATES.min || ratio > SAME_RATES.max)
   {
     return "its speeds are " + roundedText(ratio, 3) + " times the rate of its angles, allowed: 0.5 ... 2 (" +
-           (ratio < 0.0 ? "of the other sign" :
-            ratio > 1.0 ? "degrees/s?" :
-                          "none?") +
+           (ratio < 0.0 ? "is their sign wrong?" :
+            ratio > 1.0 ? "are they degrees/s?" :
+                          "are they missing?") +
            ")";
   }
   return {};

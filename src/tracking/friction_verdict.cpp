@@ -305,7 +305,7 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
   }
   if (context.own.is_unjudged)
   {
-    text += " The reference did not judge this joint's friction, so it is compared with the twin's.";
+    text += " The reference did not judge this joint's friction, so the program compares it with the twin's friction.";
   }
   text += " The joint has " + fixedText(evidence.temperature(), 0) + " degC (" + temperatureSource(evidence) + ")";
   text += std::isfinite(context.own.temperature) ?

@@ -34,7 +34,7 @@ MeasuredGear::MeasuredGear(const Parameters& parameters)
   const SolveStatus status = insertUnderLoad(ring_, 0.0, 0.0);
   if (!status.ok())
   {
-    throw ParameterError("no equilibrium of the unloaded gear: " + explanationOf(status));
+    throw ParameterError("the unloaded gear has no equilibrium: " + explanationOf(status));
   }
 }
 

@@ -199,7 +199,7 @@ class Commands(Recordings):
                            (lambda: arm.set_payload(1.0, (0.0, 0.0, 20.0)), "centre: 20"),
                            (lambda: arm.set_temperature(float("nan")), "degC"),
                            (lambda: arm.set_temperature(20.0, "knee"), "no joint 'knee'"),
-                           (lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT one of base"),
+                           (lambda: arm.inject_fault("knee:pitting:1.0"), "JOINT is one of base"),
                            (lambda: arm.run(-1.0), "duration"), (lambda: arm.run(0.1, rate=1e-300), "rate = 1.0?e-300"),
                            (lambda: arm.set_wrench((0.0, 0.0, 2000.0)), "1000"),
                            (lambda: hjt.Arm("ur5", [0.0]), "6 finite angles"),

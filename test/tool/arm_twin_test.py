@@ -139,17 +139,17 @@ class ArmTwin(tool.ToolTest):
         header = "timestamp," + ",".join(f"{name}_{i}" for name in ("target_q", "target_qd") for i in range(JOINTS))
         for scale, speed_scale, text in (
                 (180 / math.pi, 180 / math.pi, "set point 1: shoulder_pan_joint: angle = 43.5"),
-                (1.0, -1.0, "base: its speeds are -1 times the rate of its angles, allowed: 0.5 ... 2 (of the other"),
+                (1.0, -1.0, "base: its speeds are -1 times the rate of its angles, allowed: 0.5 ... 2 (is their sign"),
                 (1.0, 180 / math.pi, "base: its speeds are 57.3 times the rate of its angles"),
-                (1.0, 0.0, "base: its speeds are 0 times the rate of its angles, allowed: 0.5 ... 2 (none?)")):
+                (1.0, 0.0, "base: its speeds are 0 times the rate of its angles, allowed: 0.5 ... 2 (are they")):
             rows = [[0.08 * k] + [scale * (0.76 + 0.08 * k)] * JOINTS + [speed_scale] * JOINTS for k in range(4)]
             self.write("motion.csv", "\n".join([header] + [",".join(map(str, row)) for row in rows]) + "\n")
             self.fail_with(1, [f"motion.csv: {text}"], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv")
 
     def test_what_is_wrong_is_named(self):
         write_motion(self.path("motion.csv"), duration=0.1)
-        for options, text in ((["--fault", "knee:tooth_wear:0.5"], "JOINT one of base, shoulder, elbow"),
-                              (["--fault", "tooth_wear:0.5"], "JOINT one of base"),
+        for options, text in ((["--fault", "knee:tooth_wear:0.5"], "JOINT is one of base, shoulder, elbow"),
+                              (["--fault", "tooth_wear:0.5"], "JOINT is one of base"),
                               (["--fault", "elbow:tooth_wear:5"], "severity")):
             self.fail_with(1, [text], "arm", "motion.csv", "--arm", "ur5", "--out", "no.csv", *options)
         ur5 = os.path.join(tool.CHECKOUT, "config/arms/ur5.yaml")

@@ -175,7 +175,7 @@ class SweepArm(SweepTest):
         for change, said in {
                 ("joint: elbow", "joint: knee"): "is not a joint of the arm; its joints are base, shoulder, elbow",
                 ("joint: elbow, ", ""): "needs the key 'joint'",
-                ("arm: ur5", "arm: ur6"): "arm ur6: neither a file nor an arm",
+                ("arm: ur5", "arm: ur6"): "arm ur6 is neither a file nor an arm",
                 ("motion: nod.csv", "motion: none.csv"): "none.csv",
                 ("payload: {grid: [0.0, 4.0]}", "payload: -1.0"): "payload = -1.0 [kg] is out of range",
                 ("[target_q,", "[motor_angle,"): "is not a column; allowed: target_q, target_qd",
