@@ -64,8 +64,8 @@ constexpr const char* GAINS_FILE = "controller.yaml";
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 
-/// Gives each drive of an arm its own seeds, as drives of one series differ. The seeds of a joint's pitch deviations
-/// grow by twice the joint's number, counted from the base. The seed of its sensors' noise grows by this number.
+/// Gives each drive of an arm its own seeds, so that its gear and its noise differ. The joint's number from the base on
+/// is added to the seed of its sensors' noise, and twice this number to the seeds of its pitch deviations.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
 /// Adds faults to the drives. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is the name or the

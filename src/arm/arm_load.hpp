@@ -118,7 +118,6 @@ struct ArmSample
 /// rows (RowTimes): recorded velocities for load and vibration; if there are none, the slow rates for the vibration
 /// alone, and a sample is ready later by MotionDifferentiator::HALF_WIDTH. Live and offline rates are equal. After
 /// construction nothing throws or allocates.
-/// MotionDifferentiator::HALF_WIDTH. Live and offline alike. After construction nothing throws; nothing allocates.
 class ArmRates
 {
 public:
@@ -159,7 +158,7 @@ private:
 };
 
 /// Torques that an arm needs at its joints in the motion of a sample. ArmSample::own contains the vibration of the arm,
-/// mostly its response to the drives' ripple. So the torque for `own` - the torque for `joints` is that of the
+/// mostly its response to the drives' ripple. The torque for `own` minus that for `joints` is the torque of the
 /// vibration. After construction nothing throws or allocates.
 class LinkTorques
 {

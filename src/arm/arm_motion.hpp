@@ -26,8 +26,7 @@ enum class ArmAccelerations : std::uint8_t
 };
 
 /// A commanded motion through set points. Between two set points the angles follow cubics that have the angles and
-/// speeds of both. Before the first set point the joints stand still at its angles, and after the last one at those of
-/// the last one.
+/// speeds of both. Before the first and after the last set point the joints stand still at its angles.
 class ArmMotion
 {
 public:

@@ -55,8 +55,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
 /// A function that ranks the arms of these names, the best first.
 using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
 /// Name of the arm that explains the rows so much better than `own` that it contradicts `own`; empty: there is none.
-/// `names` contains `own`. The function tries no other arm if `own` explains the rows so well that none can contradict
-/// it.
+/// `names` contains `own`. If `own` explains the rows well enough, the function tries no other arm.
 std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank);
 
 /// The clause "the arm may be a ur5e, which explains ...".

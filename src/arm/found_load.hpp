@@ -45,8 +45,8 @@ struct IdentifiedMounting
   double size{ 1.0 };                  ///< size of the gravity that fits best, over the configured size [-]
 
   double tilt() const;  ///< angle between configured and found gravity [rad]
-  /// Whether the found direction is far from the configured one, both in half widths and against the error that arms
-  /// with the right mounting show, and the found size is that of gravity.
+  /// Whether the found direction is significantly far from the configured one, and farther than arms with the right
+  /// mounting show, and the found size is that of gravity.
   bool differs() const;
   /// The clause "the mounting differs from the configured one: gravity is tilted by ...".
   std::string text() const;

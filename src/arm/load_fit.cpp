@@ -370,8 +370,7 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
 }
 
 /// Friction of each joint by all hypotheses. The factor is that of the joint alone or that with common factors,
-/// whichever is nearer to 1. With another mounting no friction is known, because the twins' friction is that of a wrong
-/// load.
+/// whichever is nearer to 1. With another mounting it is unknown, because the twins' friction belongs to a wrong load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());

@@ -16,9 +16,8 @@ namespace hjt
 /// on [rad], and optionally `target_qd_0` and `target_qdd_0` and so on. @throws InputError, ParameterError.
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
-/// Computes missing speeds and accelerations from differences of the angles. A joint is at rest at each end of the
-/// motion, unless it needs more than 10 rad/s^2 to start or stop within a row: then the motion is a piece of a longer
-/// one.
+/// Computes missing speeds and accelerations from differences of the angles. A joint rests at each end of the motion,
+/// unless it needs more than 10 rad/s^2 to start or stop within a row, as in a piece of a longer motion.
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
 
 /// Corrects the times of set points whose stamps jitter, for example because rows were stamped after they were sent.

@@ -59,8 +59,8 @@ public:
   std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
 
   /// Standard deviation of FrictionPoints::ratio by the scatter of the blocks, as a share of the ratio. Each block adds
-  /// the square of its part of the numerator - the ratio times its part of the denominator. Infinite: fewer than three
-  /// blocks.
+  /// the square of: its part of the numerator minus the ratio times its part of the denominator. Infinite: fewer than
+  /// three blocks.
   double deviation() const
   {
     FrictionBlocks all = *this;

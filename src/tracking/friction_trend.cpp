@@ -12,8 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Prior standard deviation of the ratio of a joint's response to common factors, to the response of the other joints
-/// [-].
+/// Prior standard deviation of a joint's response to common factors, over the response of the other joints [-].
 constexpr double OTHER_ANSWER = 0.5;
 
 double weightOf(const DatedFriction& recording)

@@ -56,9 +56,9 @@ private:
 /// Fits the trend. It is not known with fewer than MIN_RECORDINGS recordings, or if all recordings have the same time.
 FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 
-/// Logarithm of the common factor of a group of joints in each recording. It is the median over the joints of the
-/// logarithm of their friction - the joint's own median over the recordings. All recordings count alike, so the factor
-/// makes no step from one recording to the next. `logarithms`: by joint and recording; none: not known. The factor of a
+/// Logarithm of the common factor of a group of joints in each recording: the median over the joints of the logarithm
+/// of their friction, minus the joint's own median over the recordings. All recordings count alike, so the factor makes
+/// no step from one recording to the next. `logarithms`: by joint and recording; none: not known. The factor of a
 /// recording is none if fewer than MIN_WITNESSES joints are known in it.
 std::vector<std::optional<double>> commonOfRecordings(
     const std::vector<std::vector<std::optional<double>>>& logarithms);

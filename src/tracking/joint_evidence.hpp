@@ -94,8 +94,7 @@ public:
   /// Standard deviation of the twin's torsion over the rows [rad].
   double twinAmplitude() const { return std::sqrt(std::max(0.0, covariance(TWIN, TWIN))); }
 
-  /// Standard deviation over the rows of a sine of the joint angle with amplitude 1, for the phase that makes it
-  /// largest [-].
+  /// Standard deviation over the rows of cos(joint angle + phase), for the phase that makes it largest [-].
   double turnAmplitude() const
   {
     const double cosines = covariance(COSINE, COSINE);
@@ -424,8 +423,7 @@ public:
   /// Root mean square of the residual without the best constant and the best multiple of the predicted friction [A]. So
   /// a constant load, wear and cold grease do not count.
   double unexplainedRms() const;
-  /// Measured over predicted current, for the part of load and inertia without friction; NaN: this part is too small
-  /// [-].
+  /// Measured over predicted current for load and inertia, without friction [-]; NaN: this current is too small.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< mean temperature of the rows [degC]
   /// Whether more than half of the rows had a received temperature.

@@ -160,8 +160,7 @@ public:
     return factor;
   }
 
-  /// Lag of the recorded velocity behind the slope of the angles [s]. The lag has a meaning only if the factor is near
-  /// 1.
+  /// Lag of the recorded velocity behind the slope of the angles [s]. It has a meaning only if the factor is near 1.
   FittedFactor lag() const noexcept
   {
     FittedFactor lag;

@@ -191,7 +191,6 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
 /// was stuck, or a driver publishes faster than its robot measures. A row that follows within a quarter of the mean
 /// step was stamped when a buffer was emptied, so its stamp is not its time. After construction nothing throws or
 /// allocates.
-/// throws or allocates.
 class RowFilter
 {
 public:
@@ -199,7 +198,7 @@ public:
 
   using Rows = std::vector<MotionRow>;
 
-  /// @param speeds greatest speed of each joint [rad/s]
+  /// @param speeds largest speed of each joint [rad/s]
   explicit RowFilter(std::vector<double> speeds)
     : speeds_(std::move(speeds)), last_(speeds_.size()), raw_(speeds_.size()), held_(ROOM, Rows(speeds_.size()))
   {
