@@ -60,7 +60,7 @@ std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const Configur
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
 constexpr const char* GAINS_FILE = "controller.yaml";
 
-/// Numbers of the joints by the alphabetical order of their names, in which UR's driver publishes them.
+/// Numbers of the joints in alphabetical order of their names, as UR's driver publishes them.
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 

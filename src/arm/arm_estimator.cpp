@@ -75,12 +75,12 @@ constexpr double ARM_FRICTION = 0.1;     // [-]
 constexpr double ARM_COLD = 1.0;         // [10 K]
 constexpr double GROUP_FRICTION = 0.04;  // [-]
 constexpr double JOINT_GAIN = 0.03;      // [-]
-constexpr double ALIKE_GAIN = 0.003;     // prior of the gain of a joint whose load is less than its friction [-]
+constexpr double ALIKE_GAIN = 0.003;     // width for the gain of a joint whose load is less than its friction [-]
 constexpr double JOINT_FRICTION = 0.05;  // [-]
 constexpr double JOINT_COLD = 0.3;       // [10 K]
 constexpr double JOINT_OFFSET = 0.1;     // [A]
 constexpr double JOINT_LOSS = 0.02;      // loss over load [-]
-constexpr double JOINT_INERTIA = 0.3;    // relative change of the rotor's inertia [-]
+constexpr double JOINT_INERTIA = 0.3;    // width for the relative change of the rotor's inertia [-]
 
 constexpr std::size_t FEWEST = 20;  // least number of rows with which a joint counts
 
@@ -487,7 +487,7 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   {
     deviation = std::max(robustDeviation(error), LEAST);
   }
-  // A standard deviation from rows with the weights by the last standard deviation is likelier.
+  // The weights of the rows follow from the last standard deviation and give a likelier one.
   Eigen::ArrayXd squares = (error / deviation).array().square();
   deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
   squares = (error / deviation).array().square();

@@ -46,7 +46,8 @@ public:
   /// Computes the motion of each joint at a time [s], fast if times increase. `motion` has an entry for each joint.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
-  /// In a motion of two set points, the second becomes the first, and this one the second. It need not be at rest.
+  /// In a motion of two set points, the second becomes the first, and the new one the second, which need not be at
+  /// rest.
   void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
 
   /// Replaces the motion of all joints at the first set point. `joints` has an entry for each joint.

@@ -71,7 +71,7 @@ struct PayloadChange
   bool is_found{};
 };
 
-/// The load of an arm by its currents.
+/// The load of an arm, as its currents show it.
 struct FoundLoad
 {
   IdentifiedPayload payload;
@@ -82,7 +82,7 @@ struct FoundLoad
   FoundDrag drag{};
   std::vector<FittedFriction> frictions{};  ///< friction of each joint
 
-  double gain{};             ///< factor of all currents that load and friction do not explain - 1 [-]
+  double gain{};             ///< common factor of all currents that load and friction do not explain, minus 1 [-]
   double gain_half_width{};  ///< half width of the gain's 95 % interval [-]
 
   /// Says why no joint can be judged: the currents of all joints differ from the expected currents by a factor that

@@ -467,7 +467,7 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
   constexpr std::size_t MOST_ROWS = 400;  // largest number of rows of each joint
   constexpr double OTHER_SIZE = 20.0;     // how much rarer another factor of all currents is, as a logarithm [-]
-  constexpr double CLEAR = 0.3;           // least logarithm of such a factor; payloads and gains cause smaller ones [-]
+  constexpr double CLEAR = 0.3;    // least logarithm of a common factor that counts; payloads and gains cause less [-]
   constexpr double NO_MASS = 0.5;  // standard deviation of masses below zero, by errors of the links' masses [kg]
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;

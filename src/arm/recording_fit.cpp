@@ -41,11 +41,12 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// Whether the factor is larger than the factors by gains of one type and by payloads with which joints can be judged.
+/// Whether the factor is farther from 1 than by gains of one type and by payloads with which joints can be judged.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
-  constexpr double SURE = 2.0;  // standard deviations; fewer would leave more joints without a verdict
+  constexpr double SURE =
+      2.0;  // least significance in standard deviations, because a joint without a verdict gives no alarm
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
          std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }

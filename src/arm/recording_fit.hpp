@@ -105,7 +105,7 @@ public:
   /// Whether the findings are final: there are enough rows, or the joints have moved for PATIENCE.
   bool isSettled() const;
 
-  /// Misfit of each joint: the first finding on the arm or on the joint with which it cannot be judged.
+  /// Misfit of each joint: the first finding on the arm or on the joint that prevents the joint's verdict.
   std::vector<Misfit> whyNotJudged() const;
 
 private:

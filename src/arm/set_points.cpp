@@ -478,7 +478,7 @@ std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
   {
     ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
     const double length = points[k].time - points[k - 1].time;
-    // The acceleration of a cubic is largest at its ends. The set points themselves also belong to their neighbours.
+    // The acceleration of a cubic is largest at its ends. These times are just inside, where no neighbour counts.
     for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
     {
       piece.at(points[k - 1].time + share * length, motion);

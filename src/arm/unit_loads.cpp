@@ -147,7 +147,7 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
     columns(row, 0) = joint.effort(of_mass, tip.place, Eigen::Vector3d::Zero());
     for (Eigen::Index axis = 0; axis < 3; ++axis)
     {
-      // This is the part of a mass at the end of the arm that is linear in the arm. The inertia is quadratic.
+      // A unit moment has the effects of a mass at the end of `arm` that are linear in `arm`. Its inertia is quadratic.
       const Eigen::Vector3d arm = tip.orientation.col(axis);
       columns(row, 1 + axis) = joint.effort(tip.swing(arm), tip.place, arm.cross(of_mass));
       // The weight of what the joint carries: its moment about a joint that turns, or its force on a joint that slides.

@@ -129,7 +129,7 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
 /// Whether a joint shows as much friction as a larger joint would, relative to the factor of the whole arm.
 bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
 {
-  constexpr double FAR_MORE = 2.0;  // multiple of the expected friction from which on it counts as far more [-]
+  constexpr double FAR_MORE = 2.0;  // larger multiples of the expected friction are far more [-]
   bool has_one = false;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {

@@ -58,7 +58,7 @@ struct ArmFriction
   std::optional<double> temperature;  ///< temperature that explains the factor; none: not within 0 ... 60 [degC]
   std::vector<JointGroup> groups;
   bool is_known{};  ///< whether enough joints show their friction
-  Misfit misfit;    ///< why no joint of the arm is judged
+  Misfit misfit;    ///< why no joint of the arm is judged; empty: the joints are judged
 };
 
 /// Finds the common factors of an arm's joints. The factor of the whole arm is the median of the joints' ratios, if

@@ -94,7 +94,7 @@ public:
 
 private:
   static constexpr double PERIOD = 0.019;  // least time between two rows that count [s]
-  static constexpr std::size_t ROOM = 64;  // number of rows for more than twice LONGEST at PERIOD
+  static constexpr std::size_t ROOM = 64;  // number of held rows: enough for twice LONGEST at PERIOD
 
   struct Row
   {

@@ -14,9 +14,10 @@ namespace hjt
 struct FrictionShares
 {
   double preload{};  ///< friction of balls loaded by their own outer race; proportional to bearing.race_preload
-  double grease{};   ///< bearing, by speed; above 2000 mm^2/s rpm proportional to bearing.viscosity to the power of 2/3
-  double flanks{};   ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
-  double rest{};  ///< bearing by the wave generator's load, outer race, rim, cup, Coulomb friction of motor and output
+  double
+      grease{};  ///< friction of the bearing by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power of 2/3
+  double flanks{};    ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
+  double rest{};      ///< friction of loaded bearing, outer race, rim and cup, Coulomb friction of motor and output
   double stribeck{};  ///< rise of the friction towards standstill; proportional to motor.stribeck_torque
   double viscous{};   ///< friction of motor and output proportional to the speed
 

@@ -120,7 +120,7 @@ class FrictionPoints
 {
 public:
   static constexpr std::uint64_t MIN_ROWS = 30;  ///< least number of rows of a point
-  static constexpr double SLOWEST = 0.01;        ///< rows with slower motion do not count [rad/s]
+  static constexpr double SLOWEST = 0.01;        ///< least speed of a row that counts [rad/s]
 
   /// Adds a row. `time` [s]; `speed` [rad/s] and `load` [N.m] with sign; `measured`, `twin`: friction, > 0 against the
   /// motion [N.m].

@@ -20,7 +20,7 @@ double weightOf(const DatedFriction& recording)
   return 1.0 / (recording.deviation * recording.deviation);
 }
 
-/// Time, common friction and logarithm of the factor - their weighted means. Each row is a recording.
+/// Time, common friction and logarithm of the factor, minus their weighted means. Each row is a recording.
 Eigen::MatrixX3d aboutMeans(const std::vector<DatedFriction>& recordings)
 {
   Eigen::MatrixX3d rows(static_cast<Eigen::Index>(recordings.size()), 3);

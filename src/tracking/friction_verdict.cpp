@@ -20,7 +20,7 @@ namespace
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
-/// The same standard deviation, for joints whose group confirms the common factor.
+/// Standard deviation of a sound drive's friction from recording to recording, if its group confirms the common factor.
 constexpr double WITNESSED_SHARE = 0.025;
 constexpr double WITNESSED_TORQUE = 0.1;
 
@@ -36,7 +36,7 @@ constexpr double LEAST_OF_FAULTS = 0.5;
 /// Friction factor below which a joint has no friction [-].
 constexpr double NO_FRICTION = 0.1;
 
-/// Largest half width of the interval of the factor's logarithm; with a wider interval the factor tells too little [-].
+/// Largest half width of the interval of the factor's logarithm; with a wider interval the factor is too uncertain [-].
 constexpr double WIDEST = 0.4;
 
 /// Largest factor by which a change of temperature changes the friction [-].
@@ -322,7 +322,7 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
 
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding)
 {
-  constexpr double MIN_CHANGE = 0.02;  // least change, as a share, by a fault of severity 1 that is named
+  constexpr double MIN_CHANGE = 0.02;  // least change by a fault of severity 1 that the finding names, as a share [-]
   for (const Cause cause : causesThatMove(evidence.assessor().signatures(), indicator, way, MIN_CHANGE))
   {
     finding.causes.push_back({ cause, 0.0 });

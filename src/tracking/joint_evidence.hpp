@@ -428,7 +428,7 @@ public:
   double temperature() const;  ///< mean temperature of the rows [degC]
   /// Whether more than half of the rows had a received temperature.
   bool isTemperatureReceived() const { return 2 * now_.reach.temperature_rows > now_.reach.rows; }
-  /// Mean friction of the twin at the speeds of friction() and the median load, at a temperature [degC], in [N.m].
+  /// Mean friction [N.m] of the twin at the speeds of friction() and the median load, at a temperature [degC].
   double twinFrictionAt(double temperature) const;
   double typicalLoad() const { return loadQuantile(0.5); }    ///< median of the load's magnitude [N.m]
   double largestLoad() const { return loadQuantile(0.999); }  ///< load that one row in a thousand exceeds [N.m]

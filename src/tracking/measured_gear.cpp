@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// Way of the wave generator above which it is inserted anew in place of being turned [rad].
+/// If the wave generator must turn farther than this, it is inserted anew at the new angle [rad].
 constexpr double LONG_WAY = 0.5;
 }  // namespace
 

@@ -54,7 +54,7 @@ public:
   static constexpr double HALF_WIDTH = 0.036;  ///< half width that suits the currents of a UR5 best (docs/arm.md) [s]
   static constexpr double MAX_GAP = 0.1;       ///< longest gap that does not cut the stream [s]
   static constexpr double MIN_STEP = 0.5e-3;   ///< least time between rows; push() drops rows that come sooner [s]
-  static constexpr double MOVING = 0.02;       ///< speed below which noise of the angles may be the reason [rad/s]
+  static constexpr double MOVING = 0.02;       ///< speed below which the motion may be noise of the angles [rad/s]
   static constexpr double SLIDING = 0.05;  ///< speed below which the motion shows little of friction and load [rad/s]
 
   /// `half_width`: half width of the window of a fit, at most 0.12 [s].
@@ -78,7 +78,7 @@ private:
     double position{};        // [rad]
     std::uint64_t segment{};  // number of gaps before the row
   };
-  static constexpr std::size_t ROOM = 512;  // enough for two windows of rows at MIN_STEP
+  static constexpr std::size_t ROOM = 512;  // number of held rows, enough for two windows at MIN_STEP
   static constexpr int MIN_ROWS = 4;  // least number of rows, because a parabola passes through any three rows exactly
   static constexpr std::uint64_t MIN_SIDE = 2;  // least number of rows on each side, at any distance
 

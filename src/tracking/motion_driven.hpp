@@ -298,7 +298,7 @@ private:
   MotionSample last_;
   MotionPrediction predicted_;  // prediction for the last sample at the temperature predicted_at_
   mutable std::array<Viscosity, 2> known_;
-  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };  // NaN: there is no prediction [degC]
+  double predicted_at_{ std::numeric_limits<double>::quiet_NaN() };  // temperature of predicted_; NaN: none [degC]
   bool started_{};
 };
 

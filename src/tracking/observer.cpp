@@ -104,7 +104,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   const double gear = curve_.torque(torsion);
   const ObserverPiece& piece = pieces_[curve_.pieceAt(torsion)];
 
-  // Torque of the torsion curve, less the torque stiffness times torsion of the linear piece.
+  // Torque of the torsion curve minus that of the linear piece (stiffness times torsion).
   const double beyond = gear - piece.stiffness * torsion;
   const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
   const Vector free =

@@ -24,7 +24,7 @@ enum class Reason : std::uint8_t
   CONTACT = 9,              ///< something touched the arm
   EFFORT_NOT_CURRENT = 10,  ///< the effort is not the motor's current
   EFFORT_TOO_LARGE = 11,  ///< the effort is several times the current that the motion needs: its unit or gain is wrong
-  COMMON_FRICTION = 12,   ///< the friction of the whole arm differs by more than a temperature causes
+  COMMON_FRICTION = 12,   ///< no temperature explains the friction of the whole arm
   TELEMETRY_UNSETTLED = 13,  ///< the program does not know yet whether angles and efforts fit together
   ROW_RATE = 14,             ///< the rows are too far apart in time
   STAMPS = 15,               ///< the stamps do not fit the angles, velocities or currents
@@ -68,7 +68,7 @@ struct FittedFriction
 {
   double factor{ 1.0 };
   double lower{ 0.0 };
-  double upper{ HUGE_VAL };    ///< upper end of the interval; with `lower` = 0: there is no fit
+  double upper{ HUGE_VAL };    ///< upper end of the interval; HUGE_VAL with `lower` = 0: there is no fit
   double of_rows{ HUGE_VAL };  ///< half width of the interval by the rows alone, without prior knowledge [-]
   /// Clauses that say why the friction may be as expected although the joint's own rows show more, or less. Empty: it
   /// may not.

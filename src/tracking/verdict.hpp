@@ -23,7 +23,7 @@ namespace hjt
 constexpr double MORE_THAN_OWN = 0.05;
 constexpr double LESS_THAN_OWN = 0.10;
 
-/// The friction that a friction factor divides by.
+/// Reference with which the friction of a joint is compared.
 enum class FrictionReference : std::uint8_t
 {
   TWIN,

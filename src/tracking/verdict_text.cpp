@@ -83,7 +83,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       return "The load is unknown.";
     case Reason::TELEMETRY_UNSETTLED:
       return "The program does not know yet whether angles and efforts fit together.";
-    default:  // the clause of the misfit is the reason
+    default:  // verdict.misfit holds the reason
       break;
   }
   return sentence(verdict.misfit);
