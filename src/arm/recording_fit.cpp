@@ -45,8 +45,7 @@ bool differs(const FittedFactor& factor, double from)
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
-  constexpr double SURE =
-      2.0;  // least significance in standard deviations, because a joint without a verdict gives no alarm
+  constexpr double SURE = 2.0;  // standard deviations; few, because a joint without a verdict gives no alarm
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
          std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }

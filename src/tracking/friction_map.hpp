@@ -13,9 +13,8 @@ namespace hjt
 /// Shares of the joint's friction in steady motion, each as a torque at the motor shaft, >= 0 [N.m].
 struct FrictionShares
 {
-  double preload{};  ///< friction of balls loaded by their own outer race; proportional to bearing.race_preload
-  double
-      grease{};  ///< friction of the bearing by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power of 2/3
+  double preload{};   ///< friction of balls loaded by their own outer race; proportional to bearing.race_preload
+  double grease{};    ///< friction of the bearing by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power 2/3
   double flanks{};    ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
   double rest{};      ///< friction of loaded bearing, outer race, rim and cup, Coulomb friction of motor and output
   double stribeck{};  ///< rise of the friction towards standstill; proportional to motor.stribeck_torque

@@ -176,13 +176,12 @@ public:
   bool hasVelocity() const noexcept { return has_velocity_; }
 
 private:
-  static constexpr int PIECES = 8;                 // number of pieces in a window
-  static constexpr std::size_t MIN_WINDOWS = 6;    // least number of windows for a median
-  static constexpr std::size_t KEPT = 256;         // number of kept windows: 200 s of motion
-  static constexpr double MEMORY = 2000.0;         // number of pieces over which the lag is averaged
-  static constexpr double MIN_ACCELERATED = 20.0;  // least number of pieces with an acceleration
-  static constexpr double LEAST_ACCELERATION =
-      0.1;  // least acceleration with which a piece counts as accelerated [rad/s^2]
+  static constexpr int PIECES = 8;                   // number of pieces in a window
+  static constexpr std::size_t MIN_WINDOWS = 6;      // least number of windows for a median
+  static constexpr std::size_t KEPT = 256;           // number of kept windows: 200 s of motion
+  static constexpr double MEMORY = 2000.0;           // number of pieces over which the lag is averaged
+  static constexpr double MIN_ACCELERATED = 20.0;    // least number of pieces with an acceleration
+  static constexpr double LEAST_ACCELERATION = 0.1;  // least acceleration of an accelerated piece [rad/s^2]
 
   struct Piece
   {
