@@ -61,7 +61,7 @@ public:
 
   void setPayload(const Payload& payload) noexcept;  ///< replaces the payload of the arm's description
 
-  /// Computes the symmetric mass matrix of links and payload [kg.m^2]. A row and a column of `mass` is a joint.
+  /// Computes the symmetric mass matrix of links and payload [kg.m^2]. Each row and column is for a joint.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
   double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< potential energy of the weight [J]
   ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;

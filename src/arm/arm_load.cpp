@@ -125,7 +125,7 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Sets the payload that the arm carries at `time`. Before the first entry of course_ it is the payload of this entry.
+/// Sets the payload that the arm carries at `time`. Before the first entry of course_ the first payload counts.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

@@ -88,7 +88,7 @@ struct FoundLoad
   /// Says why no joint can be judged: the currents of all joints differ from the expected currents by a factor that
   /// gains of one type do not have. Returns no misfit if there is no such factor.
   Misfit misfit() const;
-  /// The same load with the last payload alone, and the time from which on the arm carries it.
+  /// This load with the last payload alone, and the time from which on the arm carries it.
   FoundLoad last() const;
 };
 

@@ -28,7 +28,7 @@ struct ProtectiveStop
 
 /// A twin of an arm that follows set points under its controller. After a reset brakes hold the arm for half of the
 /// settling time, and the controller holds it for the other half. Then the motion begins. If the first set point is not
-/// at rest, the arm accelerates to it in a lead-in before.
+/// at rest, the arm accelerates to it in a lead-in before the motion.
 ///
 /// If a joint is STOP_DEVIATION away from its set point, or faster than STOP_SPEED times its limit, the controller
 /// makes a protective stop: the motors have no torque, and the brakes hold the arm until it is unlocked or reset. Both

@@ -239,7 +239,7 @@ public:
     return temperature == predicted_at_ ? predicted_ : predict(temperature);
   }
 
-  /// hjt::currentPerEffort for the joint's telemetry [A], [A/(N.m)].
+  /// Motor current for an effort of 1 by the joint's telemetry parameters [A], [A/(N.m)].
   double currentPerEffort() const noexcept { return current_per_effort_; }
 
   /// Friction [N.m] at the joint in steady motion, >= 0, at a speed [rad/s], load [N.m] and temperature [degC].

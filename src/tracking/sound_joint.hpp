@@ -22,7 +22,7 @@ struct SoundJoint
   std::vector<ReferenceBin> baseline;  ///< reference of the signals; empty: the recordings were too short
 };
 
-/// Name or file of the arm of a report, as the user gave it for the report.
+/// Name or file of a report's arm, as the user gave it to make the report.
 /// @throws InputError if the directory holds no report of an arm.
 std::string armOfReport(const std::string& directory);
 

@@ -93,7 +93,7 @@ void Tracker::pushLoad(double time, double torque) noexcept
   }
 }
 
-/// The last load that is not later than `time`; none: the load comes from the model, or there is none so early.
+/// The last load that is not later than `time`; none: the load comes from the model, or the first load is later.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);

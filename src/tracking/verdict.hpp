@@ -101,7 +101,7 @@ inline HealthLevel severityOf(VerdictLevel level)
   return level == VerdictLevel::NOT_JUDGED ? HealthLevel::OK : static_cast<HealthLevel>(level);
 }
 
-/// A number behind a verdict.
+/// Numbers on which a verdict is based.
 enum class Figure : std::uint8_t
 {
   ROWS,                    ///< number of all rows
@@ -300,7 +300,7 @@ struct GainEvidence
   /// Whether the factor of the friction is nearer to that of the load than to 1. If not, a wrong load is as likely.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
-  /// Misfit by a wrong gain; none if both factors do not depart alike, or if the load is too small to show its factor.
+  /// Misfit by a wrong gain; none if both factors differ, or if the load is too small to show its factor.
   Misfit misfit() const
   {
     constexpr double NOTEWORTHY = 0.2;  // least deviation of a gain that counts; gains of one type deviate by less [-]
