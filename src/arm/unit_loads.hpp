@@ -23,7 +23,7 @@ public:
 
   double linksMass() const;  ///< mass of the links without the payload [kg]
 
-  /// Computes the torques of unit loads at each joint. Each row is for a joint. The columns are: mass [N.m/kg] and three
+  /// Computes the torques of unit loads at each joint. Each row is a joint. The columns are: mass [N.m/kg] and three
   /// moments [N.m/(kg.m)] of a payload, gravity along each axis of the base's frame [N.m/(m/s^2)], a force against the
   /// tip's motion [N.m/N], and forces on the tip along two directions across gravity [N.m/N].
   void torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd& columns) noexcept;
