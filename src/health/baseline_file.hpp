@@ -8,13 +8,13 @@
 
 namespace hjt
 {
-/// A file of references is YAML with `load_step`, the step between two classes of load [N.m], with `model`, whether a
-/// model's indicators were subtracted, and with a list `baseline` of operating points. Each of them has `[windows,
-/// mean, spread, ...]` of each indicator.
+/// A file of references is YAML. `load_step` is the width of a class of load [N.m], `model` tells whether a model's
+/// indicators were subtracted, and `baseline` is a list of operating points. Each operating point has a row `[windows,
+/// mean, spread, ...]` for each indicator.
 
-/// `less_model`: whether a model's indicators are subtracted from the windows.
-/// @throws InputError naming the file and what in it is wrong: also if its load step is not that of the gear, or if a
-/// model was subtracted and none is given here, or the other way round.
+/// Reads a file of references. `less_model`: whether a model's indicators are subtracted from the windows here.
+/// @throws InputError with file and reason if the file is invalid, if its load step is not that of the gear, or if its
+/// `model` is not `less_model`.
 std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters& parameters, bool less_model);
 
 /// @throws InputError if the file cannot be written.

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Whether a table has a row for each value of the enumeration, in the order of the enumeration. For static_assert.
+/// Whether a table has a row for each value of an enumeration, in the order of the enumeration; for static_assert.
 template <class Rows, class Row, class Key>
 constexpr bool isInOrder(const Rows& rows, Key Row::*key)
 {
@@ -28,7 +28,7 @@ enum class FloorUnit
 {
   INDICATOR,       ///< unit of the indicator itself
   ENCODER_COUNT,   ///< one count of both encoders, as an angle of the joint [rad]
-  COUNT_IN_A_TURN  ///< one count as a share of what the joint travels in a motor turn [-]
+  COUNT_IN_A_TURN  ///< one count of both encoders, over the angle of the joint in one turn of the motor [-]
 };
 
 struct ScalarRow
@@ -36,15 +36,15 @@ struct ScalarRow
   ScalarIndicator indicator;
   const char* name;
   const char* unit;
-  Feature feature;  ///< group in which the indicator counts
+  Feature feature;  ///< group of the indicator; only the largest score of a group counts
   double floor{};   ///< least spread that the assessment assumes for a sound drive, in `floor_unit`
   FloorUnit floor_unit{};
 };
 
-/// Share of an encoder count by which the mean of a window may change [-].
+/// Error of a window's mean by the resolution of the encoders, as a share of an encoder count [-].
 constexpr double COUNT_SHARE = 0.1;
 
-/// Properties of the scalar indicators for health, messages and files.
+/// Properties of the scalar indicators, for the assessment, messages and files.
 inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::RATIO_DEVIATION, "ratio_deviation", "-", Feature::RATIO, COUNT_SHARE,
       FloorUnit::COUNT_IN_A_TURN },
@@ -60,7 +60,7 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::VISCOUS_FRICTION, "viscous_friction", "N.m.s/rad", Feature::VISCOUS },
     { ScalarIndicator::EFFICIENCY, "efficiency", "-", Feature::EFFICIENCY },
     { ScalarIndicator::RESIDUAL_RMS, "residual_rms", "rad", Feature::RESIDUAL, COUNT_SHARE, FloorUnit::ENCODER_COUNT },
-    // The moments of the residual are not normally distributed. The assessment therefore assumes at least this spread.
+    // Kurtosis and crest of the residual are not normally distributed. The assessment therefore assumes a large spread.
     { ScalarIndicator::RESIDUAL_KURTOSIS, "residual_kurtosis", "-", Feature::IMPULSES, 0.3, FloorUnit::INDICATOR },
     { ScalarIndicator::RESIDUAL_CREST, "residual_crest", "-", Feature::IMPULSES, 0.5, FloorUnit::INDICATOR },
     { ScalarIndicator::LOAD_FRICTION, "load_friction", "-", Feature::EFFICIENCY },
@@ -71,14 +71,14 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
 } };
 static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
 
-/// Signal of a line, or of one of its parts.
+/// Signal of a line's amplitude, or of a cosine or sine part.
 constexpr LineSignal signalOf(std::size_t indicator)
 {
   return indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] :
                                     LineSignal::MOTOR_RIPPLE;
 }
 
-/// The amplitude of the line for a part of a line, else the indicator itself.
+/// Index of the amplitude of a line for the cosine or sine part of the line; any other index itself.
 constexpr std::size_t amplitudeOf(std::size_t indicator)
 {
   const bool loaded = indicator >= LOADED_BLOCK;
@@ -94,7 +94,7 @@ struct LineRow
   Feature feature;
 };
 
-/// The tracked lines; each is an indicator of every LineSignal that hasLine.
+/// Names and groups of the lines. A line is an indicator of each LineSignal for which hasLine is true.
 inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
     { Line::WAVE_GENERATOR_1, "wave_generator_1", Feature::ORDER_1 },
     { Line::WAVE_GENERATOR_2, "wave_generator_2", Feature::ORDER_2 },

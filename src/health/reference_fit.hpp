@@ -10,36 +10,36 @@
 
 namespace hjt
 {
-/// 1 / degrees of freedom of a window's own distribution, at most: from 4 down a spread tells nothing.
+/// Largest 1 / degrees of freedom of a single window's distribution: with 4 or fewer a spread has no finite error.
 constexpr double MOST_TAIL = 0.22;
 
-/// Student's t with `freedom` as a normal deviate (Wallace 1959), and back.
+/// Converts Student's t with `freedom` degrees of freedom to a normal deviate (Wallace 1959); studentOf converts back.
 double normalScore(double t, double freedom) noexcept;
 double studentOf(double score, double freedom) noexcept;
 
-/// Normal deviate beyond which this share of the distribution lies.
+/// Normal deviate that the share `share` of the normal distribution exceeds.
 double normalQuantile(double share);
 
-/// Repeatability of one UR5 from one recording to the next: 3 % and 0.22 N.m of its friction (docs/compare.md), which
-/// corresponds to a `share` of 0.01. For other indicators nothing is measured, and a third of it is assumed.
+/// Repeatability at indicators.least_spread. At the shipped 0.01 the friction has that of one UR5 from one recording to
+/// the next, 3 % and 0.22 N.m (docs/compare.md). Other indicators have 1 %, an assumption without a measurement.
 Repeatability repeatabilityOf(const Parameters& parameters);
 
 /// Standard deviation of a sound drive's indicator from one recording to the next, in the unit of the indicator.
 double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept;
 
-/// Share of the variance that stays from one window to the next.
+/// How far the deviations of an indicator persist from window to window.
 struct Persistence
 {
-  double stays;        // r
-  double independent;  // e
+  double stays;        // share of the variance that persists, r of Baseline [-]
+  double independent;  // share of the windows that count as independent, e of Baseline [-]
 };
 
-/// Persistence of all indicators of one kind, scalars or lines, in a class: mean of the share that stays, and variance
-/// of single indicators about that mean.
+/// Share of the variance that persists, over all indicators of one kind (scalars or lines) in a class: mean of the
+/// share, and variance of single indicators' shares about the mean.
 struct CommonPersistence
 {
   double mean{};
-  double variance{};  // variance without the statistical error of each indicator
+  double variance{};  // without the part by the statistical errors of the single shares
   int count{};
 };
 
@@ -48,30 +48,30 @@ CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) n
 Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference,
                           const CommonPersistence& common) noexcept;
 
-/// Additional variance of a mean of windows, if its reference was learned in another motion.
+/// Variance that a carried reference adds to the mean of `windows` windows, in the indicator's unit squared.
 double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
                        double windows) noexcept;
 
-/// Kurtosis less 3, over 6, of Student's t with 1/`tail` degrees of freedom. A variance from such windows has 1 + 3
-/// times this the uncertainty of one from normal windows. The value is bounded: below 4 degrees of freedom it does not
-/// exist.
+/// (Kurtosis - 3) / 6 of Student's t with 1/`tail` degrees of freedom. A variance from windows with this distribution
+/// has 1 + 3 times this value the uncertainty of a variance from normal windows. The value is bounded, because at 4
+/// degrees of freedom or fewer it is not finite.
 double excessOf(double tail) noexcept;
 
-/// How the distribution of a deviation over its spread differs from the normal distribution.
+/// How the distribution of deviation / spread differs from the normal distribution (symbols of Baseline).
 struct Uncertainty
 {
   double inverse{};  // 1 / v'
   double of_mean{};  // y^2 a / k
 
-  double freedom() const noexcept;  ///< v' [-]
-  double stretch() const noexcept;  ///< g, to Student's unit [-]
+  double freedom() const noexcept;  ///< degrees of freedom v' [-]
+  double stretch() const noexcept;  ///< factor g that makes deviation / spread a Student's t [-]
 };
 
-/// `learned`: share of the variance that was learned; `tail`: a; `weight`: k; `freedom`: degrees of freedom of the
-/// learned spread.
+/// Uncertainty by the symbols of Baseline. `learned`: share y of the variance that was estimated from windows; `tail`:
+/// a; `weight`: k; `freedom`: degrees of freedom of the estimate, v + v_0.
 Uncertainty uncertaintyOf(double learned, double tail, double weight, double freedom) noexcept;
 
-constexpr double LEAST_LEFT = 1e-4;  ///< least share of a variance that the common causes leave [-]
+constexpr double LEAST_LEFT = 1e-4;  ///< least share of a variance that common causes do not explain [-]
 
 using Squares = Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>;
 using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
@@ -93,50 +93,50 @@ inline Eigen::Map<PlaceVector> mapped(Place& place) noexcept
   return Eigen::Map<PlaceVector>(place.data());
 }
 
-/// Degrees of freedom that varianceOfAlike counts as, beside a line's own: by Smyth's estimate 3.4 in seven references
-/// of 20 windows in motions of one's own, 9 in a check-up [-].
+/// Degrees of freedom of a variance by varianceOfAlike [-]. Smyth's estimate is 3.4 in seven references of 20 windows
+/// in various motions, and 9 in a check-up.
 constexpr double ALIKE_FREEDOM = 3.0;
 
-/// Variance of each line as lines like it have it in this reference, unit of the indicator squared. 0: not known.
+/// Variance of each line, estimated from similar lines of the reference, in the line's unit squared. 0: not known.
 ///
-/// Law:   s_0^2 = c_0^2 exp(mean(log(s^2 / c_0^2) + 1 / v + 1 / (3 v^2))), over the lines alike, four at least
-/// where  s, v  spread and degrees of freedom of a line;  c_0  its relativeErrors, rms;  alike: of one signal the
-///        amplitudes of lines whose phase is free, or the parts of those whose phase stays, or those of the ripple in
-///        proportion to the load
+/// Law:   s_0^2 = c_0^2 exp(mean(log(s^2 / c_0^2) + 1 / v + 1 / (3 v^2))), mean over at least four similar lines
+/// where  s, v  spread and degrees of freedom of a line;  c_0  rms of its relativeErrors
+/// Similar are the amplitudes of lines of one signal with a free phase, the parts of phase-locked lines of one signal,
+/// and the parts of lines in proportion to the load.
 /// Source: Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004), article 3, for log s^2 and the variance that follows. His
-///         s_0^2 is 0.69 of this one, a geometric mean, with ALIKE_FREEDOM: 2 exp(psi(v_0 / 2)) / v_0.
+///         s_0^2, a geometric mean, is smaller, by 2 exp(psi(v_0 / 2)) / v_0 = 0.69 with v_0 = ALIKE_FREEDOM.
 std::array<double, INDICATOR_COUNT> varianceOfAlike(const ReferenceBin& bin) noexcept;
 
-/// Standard error of each line, divided by the least standard error of its signal's lines in the same window [-]. The
-/// quotient depends on the motion, not on the noise. 0: not known.
+/// Standard error of each line, divided by the least standard error among the lines of its signal in the window [-].
+/// The quotient depends on the motion, not on the noise. 0: not known.
 std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indicators) noexcept;
 
-/// Adds a window to the sums of its class. `here`: place of the window in the class. `model`: indicators that were
-/// subtracted; nullptr: none. Does not allocate.
+/// Adds a window to the sums of its class. `here`: covariates of the window. `model`: indicators of a model that were
+/// subtracted from the window; null: none. The function does not allocate.
 void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& indicators,
                  const SignalIndicators* model, const Place& here) noexcept;
 
-/// Prior standard deviation of the change of an indicator over half a class, as a share of the indicator [-]. Of a
-/// sound drive the friction changes most: that of the shipped drive by 14 % in 5 K (threefold from 10 to 50 degC) and
-/// by 16 % with 12.6 N.m.
+/// Prior standard deviation of the change of an indicator over half a class, as a share of the indicator [-]. Friction
+/// changes most: that of the shipped drive by 14 % in 5 K (threefold from 10 to 50 degC) and by 16 % in 12.6 N.m.
 constexpr double SLOPE_SHARE = 0.2;
 
-/// Makes of the sums what windows are compared with: the straight line over the place, and of what it leaves the first
-/// principal components of the correlations, as many as stand out of noise, COMMON_CAUSES at most: eigenvalue above the
-/// edge (1 + sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967). Slopes over load and
-/// payload are those of all of `bins` that differ from this one, one of them, in temperature at most: a class sees few
-/// payloads. Components of the indicators that every window determined. `all_sums`: by `bins`. Does not allocate.
+/// Fits the reference of a class to the sums over its windows: the regression on the covariates (Place), the tails, and
+/// the common causes. `bin` is one of `bins`, and `all_sums` are their sums. The function does not allocate.
+///
+/// Ridge regression gives the slopes. Those over load and payload are common to all `bins` that differ only in
+/// temperature, because a class has windows with few payloads. The common causes are the first principal components of
+/// the residuals' correlations, for indicators that every window determined. An eigenvalue must exceed the edge (1 +
+/// sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967); at most COMMON_CAUSES do count.
 ///
 /// Law:   b = (A + lambda)^-1 a,  d = tr((2 - (A + lambda)^-1 A) (A + lambda)^-1 A_own),
 ///        lambda = (s^2 + R^2) / (SLOPE_SHARE m)^2
-/// where  A, a  products of the places, and of places and indicator, from their means, less what in other bins goes
-///              with the slopes that each has of its own;  A_own  of this bin's windows
-///        d     what the squares left fall short by where there are no slopes, in s^2 (Hastie and Tibshirani,
-///              Generalized Additive Models, 1990, section 3.5)
-///        b, s  slopes, drawn beforehand from a normal distribution of SLOPE_SHARE m; spread they leave
-///        m, R  Reference::scale, of a part of a line its amplitude's; repeatsWithin
-/// So few windows, or an indicator that is mostly noise, have small slopes that take few degrees of freedom.
-/// ReferenceBin::tail by fitTails.
+/// where  A, a   sums of products of covariates, and of covariates and indicator, about their means. Of other bins they
+///               contain only what their separate slopes do not explain;  A_own  part of A by this bin's windows
+///        b, d   slopes, with normal prior of mean 0; degrees of freedom that they use (Hastie and Tibshirani,
+///               Generalized Additive Models, 1990, section 3.5)
+///        s      standard deviation of the indicator about the regression
+///        m, R   Reference::scale (for a part of a line, that of the amplitude); repeatsWithin
+/// With few windows, or for an indicator that is mostly noise, the slopes are small and use few degrees of freedom.
 void fitReference(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
                   const std::vector<LearnedSums>& all_sums, const Repeatability& repeatability, FitRoom& room) noexcept;
 }  // namespace hjt

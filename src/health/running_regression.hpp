@@ -5,13 +5,13 @@
 
 namespace hjt
 {
-/// Least squares over a stream, by its normal equations; memory does not grow with the rows.
+/// Least squares over a stream of rows by the normal equations, in memory that does not grow with the rows.
 ///
 /// Law:   minimise  sum w (y - x . b)^2 + ridge
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
-///        w     weight as given to `add`, times the shares that `forget` kept since
-/// Columns are scaled to unit mean square before the factorisation. The ridge, 1e-6 of that, only matters where columns
-/// depend on each other: their coefficients are then shared, and `inflation` shows it.
+///        w     weight as given to `add`, times all shares that later calls of `forget` kept
+/// Columns are scaled to unit mean square before the factorisation. The ridge is 1e-6. It matters only for columns that
+/// depend on each other: it divides the effect among their coefficients, and their `inflation` is large.
 class RunningRegression
 {
 public:
@@ -23,23 +23,23 @@ public:
   void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets,
            double weight = 1.0) noexcept;
 
-  /// Changes the sums as if `share` times the other column had been subtracted from the column in every row.
+  /// Changes the sums as if `share` times column `other` had been subtracted from `column` in every row.
   void subtract(int column, int other, double share) noexcept;
-  /// Changes the sums as if the column had been zero in every row: its coefficient is then 0.
+  /// Changes the sums as if the column had been zero in every row. The coefficient of the column is then 0.
   void drop(int column) noexcept;
   /// Mean of the product of two columns [-].
   double mean(int column, int other) const noexcept;
 
-  /// Fits with the first `used` columns. False: too few rows, or not solvable; the coefficients are then as before.
+  /// Fits the first `used` columns. Returns false, and keeps the last fit, if rows are too few or the fit is singular.
   bool fit(int used) noexcept;
 
-  double rows() const noexcept { return rows_; }  ///< number of rows, minus the weight of forgotten rows [-]
+  double rows() const noexcept { return rows_; }  ///< number of rows, where `forget` reduces the count of old rows [-]
 
   // Results of the last fit.
   double coefficient(int column, int target) const noexcept { return coefficients_(column, target); }
   Eigen::Ref<const Eigen::VectorXd> coefficients(int target) const noexcept { return coefficients_.col(target); }
   double standardError(int column, int target) const noexcept;
-  /// Variance of a coefficient over what it would be if its column stood alone; 1: independent of the others [-].
+  /// Variance of a coefficient over its variance in a fit of its column alone; 1: independent of other columns [-].
   double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
 
 private:

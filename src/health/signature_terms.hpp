@@ -14,13 +14,13 @@
 
 namespace hjt
 {
-constexpr double OTHER_MOTION = 1e-3;  // weight of a signature whose motion is not like the window's [-]
+constexpr double OTHER_MOTION = 1e-3;  // weight of a signature whose motion is unlike the window's, w_0 [-]
 
-/// How far a signature's motion and the window's are alike, 0 ... 1.
+/// Likeness of a signature's motion to the motion of a window, a of CauseSearch: 0 (unlike) to 1 (alike).
 inline double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
 {
-  constexpr double SPEED_RANGE = 0.2;      // difference of the speeds' logarithms up to which motions are alike
-  constexpr double DIRECTION_RANGE = 0.3;  // difference of the directions up to which motions are alike
+  constexpr double SPEED_RANGE = 0.2;      // difference of the speeds' natural logarithms in similar motions, N
+  constexpr double DIRECTION_RANGE = 0.3;  // difference of the directions in similar motions, Q
   if (!(motion.speed > 0.0 && point.speed > 0.0))
   {
     return 1.0;
@@ -30,33 +30,33 @@ inline double likeness(const MotionKind& motion, const OperatingPoint& point) no
   return std::exp(-0.5 * (speed * speed + direction * direction));
 }
 
-/// Signatures of the set, by cause, that make the pattern of the cause: those whose severity is nearest to 0.4.
+/// Indices, by cause, of the signatures that form the cause's pattern: those with the severity nearest to 0.4.
 std::array<std::vector<std::size_t>, CAUSE_COUNT> patternRows(const SignatureSet& set);
 
-/// The numbers of a window that are compared with signatures.
+/// Compares a window with signatures.
 class SignatureTerms
 {
 public:
   SignatureTerms(const SignatureSet& set, const WindowResidual& residual) noexcept;
 
-  /// Natural logarithm of the likelihood, less a term that is equal for all signatures. `strength`: S of a cause
-  /// without signature, beside the change. `alike`: likeness of the signature's motion and the window's, 0 ... 1.
+  /// Natural logarithm of the window's likelihood under `parts`, up to a constant. `strength`: S of an unknown change,
+  /// 0 for a signature (CauseSearch). `alike`: likeness of the motions of signature and window, 0 ... 1.
   double logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept;
 
-  /// Mean square of the window's differences less the signatures' changes, in spreads of a sound drive; 1 at least.
+  /// Misfit f (CauseSearch): mean square of the difference minus the change, in spreads of a sound drive; at least 1.
   double misfit(const SignatureParts& parts) const noexcept;
 
   using Direction = std::array<double, INDICATOR_COUNT>;
 
-  /// Mean of the signatures' changes in their own spreads, each over its length, weighted by the likeness of its motion
-  /// and the window's. Lines do not count.
+  /// Mean of the signatures' normalised changes, in spreads of a sound drive, weighted by the likeness of the motions
+  /// of signature and window. Lines do not count.
   Direction direction(const std::vector<std::size_t>& rows, const OperatingPoint& point) const noexcept;
 
-  /// The window's difference along a direction, over the spread of a sound drive in that direction. `instead`: a
-  /// signature whose change takes the place of the difference.
+  /// The difference of the window along a direction, over the spread of a sound drive in this direction. `instead`: a
+  /// signature whose change replaces the difference.
   double along(const Direction& direction, const Signature* instead = nullptr) const noexcept;
 
-  /// The largest score that a single change of the signature would have. Lines count only `with_lines`.
+  /// Largest score that a change of a single indicator by the signature would have. Lines count only if `with_lines`.
   double largest(const Signature& signature, bool with_lines, const Deviations& deviations) const noexcept;
 
 private:
@@ -67,13 +67,13 @@ private:
   struct Term
   {
     double difference;
-    double own;          // variance apart from the common causes
+    double own;          // variance that common causes do not explain
     Causes common;       // loadings on the common causes
-    std::size_t number;  // of the signature
+    std::size_t number;  // index in the signature
     std::size_t indicator;
-    bool has_phase;      // one of two parts of a line
-    double sound;        // value of the sound drive, that a share refers to
-    double line_square;  // half the square of the sound line's amplitude, that of the sound lost motion; 0 of others
+    bool has_phase;      // whether the indicator is the cosine or sine part of a line
+    double sound;        // value of the sound drive, to which a share refers
+    double line_square;  // A^2 / 2 of a sound line, square of the sound lost motion, 0 for others (CauseSearch)
   };
 
   double shareOrChange(const Signature& signature, const Term& term) const noexcept;
@@ -90,8 +90,8 @@ private:
 
 using SeenFrom = std::array<double, CAUSE_COUNT>;  ///< severities by cause [-]
 
-/// Least severity of each fault at which half of the drives with that fault would raise an alarm in the windows that
-/// were compared last, among the severities of the signatures. Infinite: no severity would; NaN: the fault has no
+/// Least severity of each fault, among those of the signatures, at which half of the drives with the fault would have
+/// raised an alarm in the windows that were compared last. Infinite: no severity would; NaN: the fault has no
 /// signature. The function is for reports and allocates.
 SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point);
 }  // namespace hjt

@@ -20,22 +20,22 @@ enum class HealthLevel : std::uint8_t
 
 const char* levelName(HealthLevel level) noexcept;  ///< name of a level, for example "WARN"
 
-/// One indicator that departs from its reference.
+/// One indicator that deviates from its reference.
 struct Evidence
 {
   std::size_t indicator{};
-  double value{};     ///< value of the indicator in its unit
+  double value{};     ///< value of the indicator in the window, in the indicator's unit
   double expected{};  ///< mean of a sound drive at this operating point, in the indicator's unit
-  double score{};     ///< normal score of the deviation from `expected` [-]
+  double score{};     ///< deviation of `value` from `expected` as a score, that is, as a normal deviate [-]
 };
 
-/// Another cause that would have a similar effect.
+/// A possible cause of a deviation that is less probable than Assessment::cause.
 struct Alternative
 {
   Cause cause{};
   double confidence{};          ///< probability of the cause [-]
-  double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
-  double severity_deviation{};  ///< standard deviation of that severity [-]
+  double severity{};            ///< mean severity of the fault, if it is the cause; 0 if the cause is NONE [-]
+  double severity_deviation{};  ///< standard deviation of the severity [-]
 };
 
 /// State of the drive according to its indicators.
@@ -43,41 +43,41 @@ struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
   static constexpr std::size_t MAX_ALTERNATIVES = 3;
-  static constexpr double SET = 0.9;  ///< least probability of cause and alternatives together [-]
+  static constexpr double SET = 0.9;  ///< sum of cause's and alternatives' probabilities that ends the list [-]
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< number of completed windows
   AssessmentState state{};
-  int windows_here{};    ///< windows at the last operating point: those compared, or those in the reference
-  int windows_needed{};  ///< windows that a reference or a verdict takes
+  int windows_here{};    ///< number of windows at the last operating point, compared or (while LEARNING) learned
+  int windows_needed{};  ///< number of windows that a verdict needs or, while LEARNING, the reference
   HealthLevel level{};
-  Cause cause{};                ///< the most likely; NONE at level OK, or if no known fault explains the departure
-  bool shows_play{};            ///< the lost motion of the last window was compared: its load had both signs
-  Cause pattern{};              ///< cause with the pattern of the largest score; NONE: an indicator has a larger score
+  Cause cause{};                ///< most likely cause; NONE at level OK, or if no known fault explains the deviation
+  bool shows_play{};            ///< whether the lost motion was compared; it needs a load of both signs
+  Cause pattern{};              ///< cause whose pattern has the largest score; NONE if an indicator has a larger score
   double confidence{};          ///< probability of the cause, 0 at level OK [-]
-  double severity{};            ///< mean severity of the fault, if this is the cause; 0 with NONE [-]
-  double severity_deviation{};  ///< standard deviation of that [-]
-  double largest_score{};       ///< largest score of the last windows' mean, over the threshold; > 1: alarm [-]
+  double severity{};            ///< mean severity of the fault `cause`; 0 if `cause` is NONE [-]
+  double severity_deviation{};  ///< standard deviation of `severity` [-]
+  double largest_score{};       ///< largest score of the last windows' mean, divided by its threshold; > 1: alarm [-]
   std::size_t alternative_count{};
-  /// most likely first; with the cause they reach the probability SET
+  /// next most likely causes, most likely first, until their probabilities and that of `cause` add up to SET
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;
   std::size_t evidence_count{};
-  /// indicators beyond the threshold, strongest first; at least one in an alarm
+  /// indicators beyond the threshold, largest score first; in an alarm at least the one with the largest score
   std::array<Evidence, MAX_EVIDENCE> evidence;
 };
 
-/// Reason why the last window has no verdict, as a clause; empty if it has a verdict.
+/// Reason why the last window has no verdict, as a clause; empty if the window has a verdict.
 std::string whyNotJudged(const Assessment& assessment);
 
-/// Makes one verdict of the windows: level, most likely cause and evidence. Memory is fixed.
+/// Derives a verdict from windows: level, most likely cause and evidence. Only the constructor allocates.
 ///
-/// The assessor judges the mean of the last windows of an operating point (Baseline). WARN: an indicator or a cause's
-/// pattern is beyond the baseline's threshold. ERROR: it is beyond indicators.error_factor times the threshold. The
-/// level rises after three such means in a row, each of three windows at least, that show the higher level. It falls
-/// after three means that show a lower level at the operating point that last showed the level. If
-/// indicators.evidence_windows is below three, that number takes the place of three. Until so many means could have
-/// shown another level, OK is no verdict. The last verdict stands while the operating point has no reference, or none
-/// with the payload.
+/// The assessor judges the mean of the last windows of an operating point (Baseline). The mean shows WARN if the score
+/// of an indicator or of a cause's pattern is beyond the baseline's threshold. It shows ERROR if the deviation exceeds
+/// indicators.error_factor times the threshold. The level rises after three means in a row that show a higher level,
+/// each of at least three windows. The level falls after three means in a row that show a lower level, at the operating
+/// point that last showed the level. If indicators.evidence_windows is below three, it replaces three in these rules.
+/// The level OK is a verdict only after so many means. The last verdict stands while the operating point has no
+/// reference, or no reference with the payload.
 class Assessor
 {
 public:
@@ -90,11 +90,11 @@ public:
     baseline_.setReference(std::move(bins), carried);
   }
 
-  /// Takes a complete window. `model`: indicators of a model that were subtracted from it.
+  /// Judges a complete window. `model`: indicators of the twin that were subtracted from the window; null: none.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
-  /// The function update in parts, for a loop: after `begin`, each call of `advance` goes through so many signatures
-  /// more in search of the cause. Once all are done, the assessment is that of the new window.
+  /// The work of `update` in parts, for a loop. `begin` starts the search for the cause of a window. Each call of
+  /// `advance` searches up to `signatures` more signatures. After the last one the assessment is that of the window.
   void begin(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
   void advance(std::size_t signatures) noexcept
   {
@@ -131,9 +131,9 @@ private:
   CauseSearch cause_search_;
   OperatingPoint point_;  // operating point of the window whose cause is being searched
   bool is_searching_{};
-  OperatingBin shown_in_;  // class that the level was last seen in
-  int worse_{};            // windows in a row that show more than the level
-  int better_{};           // windows in a row that show less than the level
+  OperatingBin shown_in_;  // class of operating points that showed the level last
+  int worse_{};            // number of means in a row that show a higher level
+  int better_{};           // number of means in a row that show a lower level
   HealthLevel least_worse_{};
   HealthLevel most_better_{};
 };

@@ -14,17 +14,17 @@ namespace hjt
 {
 struct SignatureSet;
 
-/// Difference of an indicator of a sound drive, less the model's, from one motion to another.
+/// How an indicator of a sound drive, minus the indicator of the twin, differs between two motions.
 struct CarriedError
 {
-  double deviation{ 1e30 };  ///< rms of a drive like the model, in the indicator's unit; 1e30: not known
-  double share{};  ///< share of the difference between drive and model; of a line: share of all lines of its signal [-]
-  double freedom{ 1.0 };  ///< degrees of freedom from which both were estimated [-]
+  double deviation{ 1e30 };  ///< rms difference for a drive like the twin, in the indicator's unit; 1e30: not known
+  double share{};  ///< additional rms over the difference of drive and twin (of a line: of its signal's lines) [-]
+  double freedom{ 1.0 };  ///< degrees of freedom of the estimates `deviation` and `share` [-]
 };
 
-/// Class of operating points whose windows are compared: octave of speed, direction (-1 backward, 0 both, 1 forward),
-/// load in steps of three eighths of the gear's rated torque, and temperature in steps of 10 K. A missing measurement
-/// counts as 0.
+/// Class of operating points whose windows are compared with each other. A class is an octave of speed, a direction (-1
+/// backward, 0 both, 1 forward), a step of load (three eighths of the gear's rated torque) and a step of temperature
+/// (10 K). A missing measurement counts as 0.
 struct OperatingBin
 {
   int speed{};
@@ -38,61 +38,61 @@ struct OperatingBin
   }
 };
 
-/// `load_step`: step between two classes of load [N.m].
+/// The class of an operating point. `load_step`: width of a class of load [N.m].
 OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 
-/// The gear's step between two classes of load [N.m].
+/// Width of a class of load for this gear [N.m].
 double loadStep(const Parameters& parameters) noexcept;
 
-/// Covariates of healthy indicators within a class: temperature, its square, the load's mean magnitude, and numbers of
-/// the payload, which are constant during a job and equal on any path. Those are the load's constant part, its parts
-/// over sine and cosine of the output angle, and the inertia.
+/// Number of covariates that correct the indicators within a class: temperature, its square, mean magnitude of the load
+/// and four numbers of the payload. These four are the constant part of the load, the coefficients of its sine and
+/// cosine of the output angle, and the inertia. They do not depend on the path.
 constexpr std::size_t PLACES = 7;
-/// The first two covariates (temperature and its square) have slopes of their own in each class. The classes share the
-/// slopes of the other covariates.
+/// Number of covariates with a separate slope in each class: temperature and its square come first. Classes that differ
+/// only in temperature share the slopes of the other covariates.
 constexpr std::size_t OWN_PLACES = 2;
 using Place = std::array<double, PLACES>;
-using PlaceSquares = std::array<Place, PLACES>;  ///< products of two covariates, by pairs
+using PlaceSquares = std::array<Place, PLACES>;  ///< products of each two covariates, as a square matrix
 
-/// Deviations of a sound drive from one recording to the next, beside those in its reference.
+/// Standard deviations of a sound drive's indicators from one recording to the next.
 struct Repeatability
 {
-  double share{};            ///< share of each indicator, indicators.least_spread [-]
-  double friction_share{};   ///< share of the friction, at any speed [-]
-  double friction_torque{};  ///< additional part of the friction, at the motor [N.m]
+  double share{};            ///< standard deviation of an indicator over its magnitude, indicators.least_spread [-]
+  double friction_share{};   ///< part of the friction's deviation in proportion to the friction, at any speed [-]
+  double friction_torque{};  ///< constant part of the friction's deviation, at the motor [N.m]
 };
 
 /// Largest number of common causes, which change several healthy indicators together from window to window.
 constexpr std::size_t COMMON_CAUSES = 3;
 
-/// Reference of one indicator: its statistics over the windows that determined it.
+/// Reference of one indicator: statistics over the healthy windows that determined the indicator.
 struct Reference
 {
   int count{};
-  double mean{};             // in the indicator's unit; after fitReference at the mean covariates of the class
-  double variance{};         // about the mean; after fitReference about the regression on the covariates
+  double mean{};             // in the indicator's unit; fitReference sets the value at the class's mean covariates
+  double variance{};         // about the mean; fitReference sets the variance about the regression on the covariates
   double within{};           // half the mean square of differences of successive windows; 0: not known
   double relative_square{};  // mean square of relativeErrors over the windows; 0: not known [-]
   double scale{};            // mean magnitude with the subtracted model included, in the indicator's unit
   bool fitted{};             // fitReference has set slopes and common causes
-  double ridge{};            // lambda: prior information of the slopes, as a number of windows at covariate 1 [-]
+  double ridge{};            // lambda of fitReference: prior information on the slopes, in windows at covariate 1 [-]
   double slopes_freedom{};   // degrees of freedom that the slopes use [-]
   Place slopes{};            // slopes over the covariates, in the indicator's unit
-  /// Loadings of the spread on the common causes, each of variance 1 [-].
+  /// Loadings of the indicator, divided by its spread, on the common causes, each of variance 1 [-].
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums of products of the differences of an indicator and of the place, over the windows or pairs of windows that have
-/// the indicator.
+/// Sums of products of differences, of an indicator and of its covariates (Place). The sums are over all windows, or
+/// pairs of windows, that determined the indicator.
 struct IndicatorSums
 {
   int count{};
-  double square{};  // of the indicator alone
+  double square{};  // of the indicator's differences
   Place mixed{};
   PlaceSquares places{};
 };
 
-/// Sums over the learned windows, of differences from the means.
+/// Sums of products of differences from the means, over the learned windows.
 struct ReferenceSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
@@ -103,7 +103,7 @@ struct ReferenceSums
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
 
-/// Sums over pairs of successive windows, of differences from one to the next.
+/// Sums of products of differences between successive windows, over the learned windows.
 struct StepSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
@@ -112,7 +112,7 @@ struct StepSums
   Place last_place{};
 };
 
-/// Number of kinds of indicators with a tail of their own: scalars and lines.
+/// Number of kinds of indicators, scalars and lines, whose windows have separate tails (ReferenceBin::tail).
 constexpr std::size_t TAILS = 2;
 constexpr std::size_t tailOf(std::size_t indicator)
 {
@@ -125,13 +125,13 @@ struct ReferenceBin
   int windows{};
   int runs{};  // number of uninterrupted sequences of windows
   Place mean_place{};
-  PlaceSquares information{};  // of the slopes from the covariates, without the ridge; set by fitReference
-  // inverse degrees of freedom of the windows' distribution, 0: normal; set by fitReference
+  PlaceSquares information{};  // information on the slopes, without the ridge; set by fitReference
+  // inverse degrees of freedom of single windows' Student distribution, by kind; 0: normal; set by fitReference
   std::array<double, TAILS> tail{};
   std::array<Reference, INDICATOR_COUNT> references;
 };
 
-/// The first windows of a class, kept because no sum holds their tails.
+/// The first windows of a class, kept to estimate the tail of their distribution, which no sum shows.
 struct KeptWindows
 {
   static constexpr std::size_t MOST = 64;
@@ -159,94 +159,93 @@ struct Deviation
 {
   double expected{};
   double spread{};
-  /// Normal score of the deviation: a normal quantity of known spread is as unlikely at so many standard deviations.
-  /// NaN: not compared.
+  /// Deviation as a normal deviate: a standard normal variable is as unlikely beyond this value. NaN: not compared.
   double score{ std::numeric_limits<double>::quiet_NaN() };
-  double threshold_factor{};  ///< deviation over spread, as a multiple of that at the threshold [-]
-  double freedom{};           ///< v': degrees of freedom that deviation over spread has [-]
-  double stretch{ 1.0 };      ///< its spread in Student's unit [-]
+  double threshold_factor{};  ///< magnitude of the deviation over the deviation at the threshold of the score [-]
+  double freedom{};           ///< degrees of freedom of deviation / spread, v' of Baseline [-]
+  double stretch{ 1.0 };      ///< factor that makes deviation / spread a Student's t, g of Baseline [-]
 
-  /// Score that another difference from the reference would have; 0: not compared.
+  /// Score of any difference from the reference, in the indicator's unit; 0: not compared.
   double scoreOf(double difference) const noexcept;
 };
 
 using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 
-/// Change of an amplitude as a nearly normal number. The amplitude of noise alone has Rayleigh's distribution, whose
-/// tail is far longer than that of the normal distribution. Its power 2/3 has no such tail (Wilson and Hilferty 1931).
+/// Change of an amplitude, transformed to a nearly normal number. The amplitude of noise alone has Rayleigh's
+/// distribution, whose tail is far longer than the normal one. The power 2/3 of the amplitude is nearly normal (Wilson
+/// and Hilferty 1931).
 ///
-/// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  to first order x;  c = x if m = 0
-/// where  m  sound amplitude;  x  its change, at least -m;  both in the unit of the amplitude
+/// Law:   c = 3/2 m^(1/3) ((m + x)^(2/3) - m^(2/3)),  c ~ x for small x;  c = x if m = 0
+/// where  m, x  sound amplitude, its change (at least -m), in the unit of the amplitude;  c  result, in the same unit
 double amplitudeChange(double sound, double change) noexcept;
 
-/// Difference of the last windows of a class from their reference, and the covariance D + F F' of sound windows.
-/// F  Reference::common times the reference's share of a score's spread;  D  square of the spread that F leaves
+/// Mean difference of the last windows of a class from their reference, and its covariance D + F F' for a sound drive.
+/// The columns of F are the effects of the common causes; the diagonal matrix D holds the remaining variances.
 struct WindowResidual
 {
   int windows{};  ///< number of averaged windows [-]
-  /// reference with the subtracted model included, in the indicators' units
+  /// expected values of the sound drive, with the twin's indicators if these were subtracted, in the indicators' units
   std::array<double, INDICATOR_COUNT> sound{};
-  /// difference from the reference; of an isFreeAmplitude by amplitudeChange
+  /// differences from the reference; if isFreeAmplitude, transformed by amplitudeChange
   std::array<double, INDICATOR_COUNT> difference{};
   std::array<double, INDICATOR_COUNT> own{};                                ///< diagonal of D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
-  double freedom{};               ///< v: degrees of freedom of the reference's spreads [-]
-  double pattern_freedom{};       ///< v' of a pattern of scalars [-]
-  double pattern_stretch{ 1.0 };  ///< spread of a pattern in the unit of Student's distribution [-]
+  double freedom{};               ///< degrees of freedom of the reference's spreads, v of Baseline [-]
+  double pattern_freedom{};       ///< degrees of freedom of a pattern of scalars, v' of Baseline [-]
+  double pattern_stretch{ 1.0 };  ///< factor that makes a pattern's score a Student's t, g of Baseline [-]
 };
 
 enum class AssessmentState : std::uint8_t
 {
   WAITING = 0,          ///< no window has been completed
-  LEARNING = 1,         ///< the window went into the reference of its operating point
+  LEARNING = 1,         ///< the last window was added to the reference of its operating point
   ASSESSED = 2,         ///< the last window was compared with the reference, and the level is a verdict
-  NO_REFERENCE = 3,     ///< the given reference does not know this operating point
-  TOO_FEW_WINDOWS = 4,  ///< compared, but nothing found in fewer windows of this operating point than a verdict takes
-  OTHER_PAYLOAD = 5     ///< not compared: the reference knows no such payload or load
+  NO_REFERENCE = 3,     ///< the reference has no windows, or too few, at this operating point
+  TOO_FEW_WINDOWS = 4,  ///< no deviation found, but in fewer windows at this operating point than a verdict needs
+  OTHER_PAYLOAD = 5     ///< not compared, because the reference has no windows with a similar payload or load
 };
 
-/// Indicators of a sound joint by operating point, learned from the first windows there or given. The class compares
-/// the trimmed mean of the last indicators.evidence_windows windows of an operating point. The trimmed mean omits a
-/// fifth of the windows at either end, at least one of three or more.
+/// Indicators of a sound joint by operating point, given or learned from the first windows at each operating point. The
+/// class compares the trimmed mean of the last indicators.evidence_windows windows of an operating point with them. The
+/// trimmed mean omits a fifth of the windows at either end, at least one of three or more (docs/indicators.md).
 ///
 /// Law:   S^2 = p (r + 1/(e n)) + max(p (1 - r), w^2) / k + R^2 + q^2 + (p + R^2) (z - z_0)' L (z - z_0) / e
 ///        t = g mean(x - m - b (z - z_0)) / S,   g^2 = 1 / (1 - 2 y^2 a / k)
 ///        p = (v s^2 + v_0 s_0^2) / (v + v_0) max(c^2 / c_0^2, 1)
 ///        score = sign(t) sqrt(v' log(1 + t^2 / v')) (8 v' + 1) / (8 v' + 3)
 ///        1 / v' = y^2 ((1 + 3 a / (1 - 4 a)) / (v + v_0) + a / k),   v = e n - 1 - d, at least 1
-/// where  m, s, n  mean, standard deviation and number of the sound windows
-///        z, z_0   covariates of the window (placeIn), their mean over the sound ones
-///        b        slopes over the covariates by ridge regression (fitReference);  s is then the deviation from them
-///        L, d     covariance of the slopes where s = 1, degrees of freedom that they use
-///        y        share of S^2 that was learned, as p and w^2 (Satterthwaite 1946)
-///        a        inverse degrees of freedom of one window's distribution, from the sound ones; 0: normal
+/// where  x        value of the indicator in a window; S is the spread of the mean difference, p the expected variance
+///        m, s, n  mean, standard deviation and number of the sound windows
+///        z, z_0   covariates of a window (placeIn), their mean over the sound windows
+///        b        slopes over the covariates (fitReference); s is the standard deviation about the regression
+///        L, d     covariance of the slopes for s = 1, degrees of freedom that the slopes use
+///        y        share of S^2 that was estimated from windows, that is, from p and w^2 (Satterthwaite 1946)
+///        a        inverse degrees of freedom of a single sound window's distribution; 0: normal
 ///        R        repeatability of the drive from one recording to the next (Repeatability)
-///        k        windows averaged, less those left out at one end
-///        w^2      half the mean square of the steps from each to the next, without the two largest: of more than
-///                 three windows
-///        r        share of s^2 that stays from one window to the next: 1 less half the mean square of what successive
-///                 windows differ by, over s^2 (von Neumann 1941), drawn to the mean of scalars or lines by as much as
-///                 its error explains their scatter, plus what it is then uncertain by; 1 if none followed another
-///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one in every stretch;
-///                 r' as r, less the error; 1 if none followed another
-///        s_0, v_0 spread by lines like it (varianceOfAlike) and ALIKE_FREEDOM; of what is no line, or carried, v_0 = 0
-///        c, c_0   what the motion makes of the fit's standard error (relativeErrors), rms, of the windows averaged and
-///                 of the healthy ones: what a line is off by differs between windows as c does
-///        q        a tenth of what one encoder count makes; 0.3 for kurtosis, 0.5 for crest
-/// A carried reference is a reference of another motion, for windows from which a model is subtracted. Such windows are
-/// compared with the class of motion to and fro at their temperature that has the most windows. b is over temperature
-/// alone, and F is 0. The variance grows by the squares of CarriedError::deviation and of CarriedError::share of |m|
-/// (of a line: of all amplitudes of its signal together), both times 10/windows below ten windows. v is
-/// CarriedError::freedom at most.
-/// The score turns Student's t into a normal deviate (Wallace 1959), so that few windows give no more alarms than many
-/// windows do.
-/// Thresholds: normal quantiles of indicators.false_alarm_rate, one half of it shared by all indicators, two-sided, the
-/// other by the patterns of all causes, one-sided (Bonferroni); without patterns all of it by the indicators.
-/// A window at the edge of a class with too few windows for a reference belongs to the class beyond that edge. A window
-/// whose payload or load makes S^2 more than OTHER_PAYLOAD_WIDENING times as large is not compared.
+///        k        number of averaged windows, minus those omitted at one end
+///        w^2      half the mean square of the differences of successive averaged windows, without the two largest;
+///                 0 for three windows or fewer
+///        r        share of s^2 that persists from window to window: 1 - half the mean square of the differences of
+///                 successive windows / s^2 (von Neumann 1941). It is shrunk to the mean of all scalars or all lines
+///                 (empirical Bayes), and its standard error is added. r = 1 if no windows are successive
+///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one window of each
+///                 uninterrupted sequence. r' is r with the error subtracted. e = 1 if no windows are successive
+///        s_0, v_0 spread of similar lines (varianceOfAlike), ALIKE_FREEDOM; v_0 = 0 for scalars or if carried
+///        c, c_0   rms of relativeErrors over the averaged windows and over the sound windows: the spread of a line
+///                 grows with the standard error of its fit
+///        q        resolution: a tenth of the effect of one encoder count; 0.3 for kurtosis, 0.5 for crest
+/// A carried reference comes from another motion, and a model is subtracted from the windows. Such a window is compared
+/// with the class of motion to and fro at its temperature that has the most windows. The slopes b are over temperature
+/// alone, and F = 0. carriedVariance is added to S^2. v is at most CarriedError::freedom.
+/// The score converts Student's t to a normal deviate (Wallace 1959). Few windows therefore cause no more false alarms
+/// than many windows.
+/// The thresholds are normal quantiles. All indicators share half of indicators.false_alarm_rate (two-sided), and the
+/// patterns of all causes share the other half (one-sided, Bonferroni). Without patterns the indicators share all of
+/// it. A window near the edge of its class counts for the class beyond the edge if its class has too few windows. A
+/// window is not compared if its payload or load adds more than OTHER_PAYLOAD_WIDENING (p + R^2) to S^2.
 ///
-/// Learning opens indicators.baseline_classes classes at most. The constructor takes their memory, 0.2 MB for each. A
-/// given reference needs 19 kB for each class, and its memory replaces that of the learned classes.
+/// Learning opens at most indicators.baseline_classes classes. The constructor allocates 0.2 MB for each. A given
+/// reference needs 19 kB for each class, and its memory replaces that of the learned classes.
 class Baseline
 {
 public:
@@ -254,53 +253,53 @@ public:
   /// Least number of windows for a spread, and least value of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
-  /// `signatures` gives the CarriedErrors.
+  /// `signatures`: set with the errors of carried references and the causes that have patterns.
   Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
-  /// Sets the reference of a file; learning stops. `carried`: the reference is of another motion.
+  /// Sets the reference, for example from a file, and ends learning. `carried`: it comes from another motion.
   void setReference(std::vector<ReferenceBin> bins, bool carried = false);
 
-  void reset() noexcept;  ///< forgets a learned reference, but keeps a given one
+  void reset() noexcept;  ///< forgets all windows and a learned reference; a reference from setReference stays
 
-  /// Learns a window or compares it: LEARNING, ASSESSED, NO_REFERENCE or OTHER_PAYLOAD. `model`: indicators of a model
-  /// that were subtracted from it; nullptr: none.
+  /// Learns or compares a window. Returns LEARNING, ASSESSED, NO_REFERENCE or OTHER_PAYLOAD. `model`: indicators of a
+  /// model that were subtracted from the window; nullptr: none.
   AssessmentState update(const SignalIndicators& indicators, const SignalIndicators* model,
                          Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }  ///< threshold of |score| [-]
-  Deviation pattern(double student) const noexcept;         ///< scores a value of Student's t along a pattern
+  Deviation pattern(double student) const noexcept;         ///< deviation, with score, of a pattern's Student t
   double patternThreshold() const noexcept { return pattern_threshold_; }  ///< threshold of the score of a pattern [-]
-  const WindowResidual& residual() const noexcept { return residual_; }    ///< for the class of the last window
+  const WindowResidual& residual() const noexcept { return residual_; }    ///< residual in the last window's class
   const OperatingBin& bin() const noexcept { return bin_; }                ///< class of the last window
   const std::vector<ReferenceBin>& bins() const noexcept { return bins_; }
   const std::vector<LearnedSums>& sums() const noexcept
   {
     return sums_;
-  }                                                           ///< by bin; empty of a reference that was given
-  int windowsHere() const noexcept { return windows_here_; }  ///< windows in the reference, or compared since reset
-  /// Windows that a reference needs.
+  }                                                           ///< by bin; empty if setReference set the reference
+  int windowsHere() const noexcept { return windows_here_; }  ///< windows learned, or compared since reset
+  /// Number of windows that the reference of a class needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
-  bool given() const noexcept { return given_; }  ///< setReference has given the reference, so that it has no sums
+  bool given() const noexcept { return given_; }  ///< whether setReference set the reference, which has no sums then
   double loadStep() const noexcept { return load_step_; }  ///< width of a class of load [N.m]
   const Repeatability& repeatability() const noexcept { return repeatability_; }
 
 private:
-  /// Difference of one window from its reference.
+  /// Differences of one window's indicators from their references.
   struct Compared
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
     std::array<double, INDICATOR_COUNT> relative{};    // by relativeErrors
-    Place along{};  // squares of z - z_0 along the principal axes of the slopes' information
+    Place along{};  // squares of z - z_0 (law above) along the principal axes of the slopes' information
   };
 
-  /// Positions of the last windows of a class; the oldest is overwritten.
+  /// Ring buffer of a class's last windows: number of windows and place of the next one.
   struct Recent
   {
     std::size_t count{};
     std::size_t next{};
   };
 
-  /// Mean difference of several windows.
+  /// Mean difference of an indicator over the last windows.
   struct Average
   {
     double difference{};
@@ -309,7 +308,7 @@ private:
     double weight{};           // k
   };
 
-  /// Factors and terms of a difference's variance beside that of the reference.
+  /// Factors and terms that the variance of a difference has in addition to the reference's variance.
   struct Widening
   {
     double stays{};
@@ -322,19 +321,19 @@ private:
   struct Variance
   {
     double all{};
-    double learned{};  // part that was learned from the reference's windows and from the scatter of the last ones
+    double learned{};  // part that was estimated from the windows of the reference and the scatter of the last windows
   };
 
   ReferenceBin* find(const OperatingPoint& point) noexcept;
   ReferenceBin* findCarried(const OperatingBin& bin) noexcept;
   void makeRoom(std::size_t bins);
-  /// Covariates of the window minus their mean in the reference.
+  /// Covariates of an operating point minus their mean in the reference.
   Place placeFrom(const ReferenceBin& bin, const OperatingPoint& point) const noexcept;
   bool isOtherPayload(const ReferenceBin& bin, const Place& place) const noexcept;
   void take(const ReferenceBin& bin, const Place& place, const SignalIndicators& indicators,
             const SignalIndicators* model, Compared& window) noexcept;
   Average average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept;
-  /// `left`: variance of the reference after the regression, in the indicator's unit squared.
+  /// Variance of a mean difference. `left`: reference's variance about the regression, in the indicator's unit squared.
   Variance variance(std::size_t indicator, const ReferenceBin& bin, const Average& average, double left,
                     const Widening& widening) const noexcept;
   void compare(const ReferenceBin& bin, std::size_t first, std::size_t count, Deviations& deviations) noexcept;
@@ -347,9 +346,9 @@ private:
   double threshold_{};
   double pattern_threshold_{};
   std::array<double, INDICATOR_COUNT> floor_{};  // least spreads q
-  Place axes_sizes_{};  // information along its principal axes for the class of the last window
+  Place axes_sizes_{};  // eigenvalues of the slopes' information, for the class of the last window
   WindowResidual residual_;
-  std::array<double, INDICATOR_COUNT> expected_{};  // for the last window, without the model's indicators
+  std::array<double, INDICATOR_COUNT> expected_{};  // expected values of the last window, without the model's
   OperatingBin bin_;
   int windows_here_{};
   bool given_{};

@@ -15,8 +15,8 @@
 
 namespace hjt
 {
-/// Causes of an alarm: the kinds of faults, in their order from FIRST_FAULT on, and a damaged tooth of the circular
-/// spline.
+/// Causes of an alarm: none, the kinds of faults (from FIRST_FAULT on, in their order), and a damaged tooth of the
+/// circular spline.
 enum class Cause : std::uint8_t
 {
   NONE,
@@ -64,27 +64,27 @@ constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);
 /// Largest deviation within a group of indicators.
 struct FeatureScore
 {
-  double score{};             ///< signed score; of a phase-locked line the length of its change, > 0; 0: not compared
-  double threshold_factor{};  ///< as in Deviation
-  std::size_t indicator{};    ///< index of that indicator
+  double score{};             ///< signed score; > 0 for a phase-locked line; 0: not compared [-]
+  double threshold_factor{};  ///< Deviation::threshold_factor of the indicator [-]
+  std::size_t indicator{};    ///< index of the indicator with the largest deviation
   bool compared{};
 };
 using FeatureScores = std::array<FeatureScore, FEATURE_COUNT>;
 
 FeatureScores featureScores(const Deviations& deviations) noexcept;
 
-/// Numbers of a signature: the scalar indicators, then the amplitudes of the lines by signal. Of a phase-locked line
-/// the number is the length of its complex change, because the phase depends on the fault's place.
+/// Number of values in a signature: changes of the scalar indicators, then of the lines' amplitudes by signal. For a
+/// phase-locked line the value is the magnitude of the complex change, whose phase depends on the place of the fault.
 constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * FIRST_LOADED + LOADED_COUNT;
 
-constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< for lines with hasLine
+constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< index; only for lines with hasLine
 {
   return SCALAR_COUNT + static_cast<std::size_t>(signal) * FIRST_LOADED + line;
 }
 static_assert(signatureNumber(LineSignal::MOTOR_RIPPLE, LINE_COUNT) == SIGNATURE_SIZE);
 
-/// Whether a signature gives a change as a share of the sound value. Stiffness and play scale with the size of the cup,
-/// thicker grease multiplies the friction, and the lag depends on the gains of the controller.
+/// Whether a signature states a change as a share of the sound value: stiffness and lost motion scale with the size of
+/// the cup, thicker grease multiplies the friction, and the lag depends on the gains of the controller.
 constexpr bool isShare(Cause cause, ScalarIndicator indicator)
 {
   switch (indicator)
@@ -114,7 +114,7 @@ constexpr bool isStiffness(ScalarIndicator indicator)
   return indicator == ScalarIndicator::TORSIONAL_STIFFNESS || indicator == ScalarIndicator::SECOND_STIFFNESS;
 }
 
-/// Additional numbers of a robot in closed loop, from LOAD_FRICTION on.
+/// First value of a signature that is known only for a robot in closed loop (friction by load, lag).
 constexpr std::size_t FIRST_OF_ROBOT = indexOf(ScalarIndicator::LOAD_FRICTION);
 constexpr std::size_t ROBOT_NUMBERS = indexOf(ScalarIndicator::LAG_ORDER_4) - FIRST_OF_ROBOT + 1;
 
@@ -123,7 +123,7 @@ constexpr bool isOfRobot(std::size_t number)
   return number - FIRST_OF_ROBOT < ROBOT_NUMBERS;
 }
 
-/// Changes of those numbers by a fault, as shares of the sound values, for any gear in any motion.
+/// Changes of friction by load and lag by a fault, for a robot with any gear in any motion.
 struct RobotSignature
 {
   Cause cause;
@@ -139,59 +139,59 @@ struct MotionKind
 };
 constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
 
-/// Changes of the indicators of one gear in one motion by a fault of one severity.
+/// Changes of all indicators of one gear in one motion by a fault of one severity.
 struct Signature
 {
   Cause cause;
   double severity;  ///< 0 ... 1 [-]
   MotionKind motion;
-  std::array<double, SIGNATURE_SIZE> change{};  ///< in the units of the indicators; as a share if isShare [-]
+  std::array<double, SIGNATURE_SIZE> change{};  ///< in the indicators' units, or as a share [-] if isShare
 };
 
-/// One signature, or several that come together. The first one is that of the cause; null: none.
+/// One signature, or several that occur together. The first one is the signature of the cause; null: no signature.
 using SignatureParts = std::array<const Signature*, 3>;
 
 /// The signatures of a gear and their errors, from the file that parameter indicators.signatures names. Without a file
-/// there are no signatures, and the errors of a carried reference are not known.
+/// the set has no signatures and no errors of a carried reference.
 struct SignatureSet
 {
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   std::string gear;                           ///< name of the gear, for the user
-  double number_error{};                      ///< r of CauseSearch [-]
-  double motion_error{};                      ///< m [-]
-  double line_error{};                        ///< l [-]
-  double evidence_weight{};                   ///< b_0 [-]
-  double misfit_weight{};                     ///< w_1 [-]
-  double severity_error{};                    ///< relative error of the severity by the signatures [-]
+  double number_error{};                      ///< r in the law of CauseSearch [-]
+  double motion_error{};                      ///< m in the law of CauseSearch [-]
+  double line_error{};                        ///< l in the law of CauseSearch [-]
+  double evidence_weight{};                   ///< b_0 in the law of CauseSearch [-]
+  double misfit_weight{};                     ///< w_1 in the law of CauseSearch [-]
+  double severity_error{};                    ///< relative error of a severity estimated by the signatures [-]
   double severity_misfit{};                   ///< additional relative error of the severity if no signature fits [-]
-  std::vector<Signature> signatures;          ///< with the indicators of a robot
+  std::vector<Signature> signatures;          ///< with the values of `of_robots`
   std::vector<RobotSignature> of_robots;      ///< by cause, in ascending order of severity
-  std::array<bool, SIGNATURE_SIZE> fitted{};  ///< indicators that the signatures contain; the search ignores the others
+  std::array<bool, SIGNATURE_SIZE> fitted{};  ///< values that the signatures contain; the search ignores the others
   std::array<double, SCALAR_COUNT>
-      sound{};  ///< indicators of the sound drive in the check-up, in their units; NaN: not known
+      sound{};  ///< scalar indicators of the sound drive in the check-up, in their units; NaN: not known
   std::array<CarriedError, INDICATOR_COUNT> carried{};
   std::array<double, CAUSE_COUNT> occurrence{};  ///< rating of how often a cause occurs; 0: not rated [-]
 };
 
-/// Causes that change an indicator by at least `share` of its sound value at severity 1; `sign`: +1 up, -1 down.
+/// Causes that change an indicator at severity 1 by at least `share` of its sound value. `sign`: +1 increase, -1 fall.
 std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indicator, double sign, double share);
 
 std::size_t patternCount(const SignatureSet& set) noexcept;  ///< number of causes that have signatures
 
-/// The cause whose pattern a window shows most clearly.
+/// The cause whose pattern has the largest score in a window.
 struct PatternScore
 {
   Cause cause{};     ///< NONE: no cause
-  double student{};  ///< Student's t with WindowResidual::freedom, one-sided [-]
+  double student{};  ///< Student's t of the pattern with WindowResidual::pattern_freedom, one-sided [-]
 };
 
-/// The window's differences d along the pattern of each cause. Many small changes that belong together show along a
-/// pattern before any of them is out of the ordinary by itself.
+/// The differences d of a window along the pattern p of each cause. A pattern combines many small changes, and can
+/// exceed its threshold before any single change does.
 ///
 /// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
-/// where  h        over the signatures of the cause whose severity is nearest to 0.4
-/// others   as in CauseSearch; lines are excluded, because F contains little of the noise that neighbouring lines share
+/// where  h  goes over the signatures of the cause whose severity is nearest to 0.4; other symbols as in CauseSearch
+/// Lines are excluded, because F contains little of the noise that neighbouring lines share.
 class CausePatterns
 {
 public:
@@ -201,51 +201,52 @@ public:
 
 private:
   std::shared_ptr<const SignatureSet> set_;
-  std::array<std::vector<std::size_t>, CAUSE_COUNT> rows_;  // indices in the set
+  std::array<std::vector<std::size_t>, CAUSE_COUNT> rows_;  // by cause: indices of its signatures in the set
 };
 
-/// Probability and severity of each cause by a window.
+/// Probability and severity of each cause, given the signals of a window.
 struct CausePosterior
 {
-  /// Probability, given that the drive is not sound; entry NONE: no fault of the table is the cause [-].
+  /// Probability of each cause, given that the drive is not sound; entry NONE: no fault with a signature [-].
   std::array<double, CAUSE_COUNT> probability{};
-  std::array<double, CAUSE_COUNT> severity{};            ///< mean, given the cause [-]
+  std::array<double, CAUSE_COUNT> severity{};            ///< mean severity of each fault, if it is the cause [-]
   std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of the severity [-]
 };
 
-/// Searches for the cause by the likelihood of the window's differences d from the reference under every signature.
+/// Searches for the cause by the likelihood of a window's differences from the reference under every signature
+/// (docs/indicators.md).
 ///
-/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) ~ 1 + O / O_m by cause, within it ~ w_0 + a
+/// Law:   d ~ t_v(mu, D_h + F F'),   P(h | d) ~ P(h) p(d | h)^b,   P(h) ~ 1 + O / O_m by cause, ~ w_0 + a in a cause
 ///        a = exp(-(ln(n / n_h) / N)^2 / 2 - ((q - q_h) / Q)^2 / 2), 1 in ANY_MOTION
 ///        D_h,ii = D_ii (1 + S^2) + (r^2 + m^2 (1 - a)) mu_i^2 + (l s A_i)^2 / 2
-///        b = b_0 (w_1 + (1 - w_1) / f),   f = max(1, (d - mu)' (D + F F')^-1 (d - mu) / N) of the most likely h
-/// where  mu       change by the signature; of the two parts of a line with a phase: mean 0, variance half its square
-///        D, F, v  WindowResidual
-///        O, O_m   rated occurrence of the cause, mean of those that are rated: of the others, and of none, O = O_m
-///        r        error of a signature in proportion to each number: other gears, places
-///        S        strength of something of no signature, 0 of a signature
-///        m, a     error of each number in a motion of another kind;  how far the motions are alike
-///        A, s     amplitude of the line that the sound drive has there, 0 of what is no line with a phase; severity
-///        l        share of such a line that a fault of severity 1 changes: errors of manufacture differ. Also of
-///                 the lost motion, without the 2: how far wear opens the teeth depends on how tight they were
-///        b        weight of the evidence: what a signature is off by is not independent from number to number
-///        f, N     misfit: the more even the best signature leaves, the less the evidence says, w_1 of it at least,
-///                 and the less is known of the severity;  numbers compared
-///        n, q     MotionKind of the window, of the signature: where a line meets a resonance of the drive, it is the
-///                 larger part of every signature, elsewhere of none;  N = 0.2, Q = 0.3, w_0 = 0.001
-/// Teeth, interface and grease wear together: h is also the sum of the signatures of two or three of them in one
-/// motion,
-/// where the others have the severity of the first or two fifths of it. Such a sum counts for the cause of the first,
-/// and all its sums together have the same prior weight as its single signatures, in addition to these.
-/// Stiffness changes as a compliance does: mu = c x^2 / x_h,  c  share by the signature, x  sound value of the window's
-/// motion, x_h  of SignatureSet::sound. An eccentric encoder adds the same to the compliance of every drive.
-/// Something of no signature: mu = 0, S = 3, 10, 30, 100. With a tenth of the weight each, what is no fault of a
-/// gear: a brake that drags, mu of running and Coulomb torque 0.05, 0.15, 0.4, 1 of the sound running torque, S = 0;
-/// noise g = 0.12, 0.25, 0.5, 1 more, 1 + S^2 = (1 + g)^2, mu of the kinematic error g of the sound one.
-/// Indicators for which the signatures were not fitted do not count.
+///        b = b_0 (w_1 + (1 - w_1) / f),   f = max(1, (d - mu)' (D + F F')^-1 (d - mu) / k) of the most likely h
+/// where  d, h     differences of the window; signature
+///        mu, s    change by h, severity of h; each of a phase-locked line's two parts has mean 0, variance mu^2 / 2
+///        D, F, v  of WindowResidual
+///        O, O_m   rated occurrence of the cause, mean of the rated causes; O = O_m for unrated causes and for NONE
+///        r        relative error of each value of a signature, because gears and places of the fault differ
+///        S        strength of an unknown change; 0 for a signature
+///        m, a     additional relative error in an unlike motion; likeness of the motions of window and signature
+///        A        amplitude of the line in the sound drive; 0 if i is no part of a phase-locked line
+///        l        share of A that a fault of severity 1 changes, because errors of manufacture differ. For lost motion
+///                 the sound value replaces A / sqrt(2), because play depends on the original preload
+///        b        factor on the evidence, because the errors of a signature's values are correlated
+///        f, k     misfit of the most likely signature: it lowers b, to b_0 w_1 at least, and widens the severity's
+///                 error;  number of compared values
+///        n, q     speed and direction of the window's MotionKind, with index h of the signature's. Lines depend on the
+///                 motion, because they meet resonances of the drive;  N = 0.2, Q = 0.3, w_0 = 0.001
+/// Teeth, interface and grease wear together. Therefore h is also a sum of the signatures of two or three of these
+/// faults in one motion. The others have the severity of the first fault, or 0.4 of it. A sum counts for the cause of
+/// its first fault. All sums of a cause together have the prior weight of its single signatures, in addition to them.
+/// A stiffness changes by mu = c x^2 / x_h, with c the share in the signature, x the sound value in the motion of the
+/// window, and x_h that of SignatureSet::sound. An eccentric encoder then changes the compliance of all drives equally.
+/// The cause NONE stands for unknown changes (mu = 0, S = 3, 10, 30, 100) and, with a tenth of the prior weight, for
+/// two changes outside the gear. A dragging brake adds 0.05, 0.15, 0.4 or 1 of the sound running torque to running and
+/// Coulomb torque (S = 0). Noise of the sensors grows by a share g = 0.12, 0.25, 0.5 or 1: 1 + S^2 = (1 + g)^2, and the
+/// kinematic error grows by g. The search ignores values that the signatures do not contain.
 ///
-/// A search makes one pass over all signatures for their likelihoods and one for the sums over them, in as many parts
-/// as the caller chooses. Only the constructor allocates.
+/// A search makes two passes over all signatures, one for their likelihoods and one for the sums over them. The caller
+/// chooses into how many parts it divides the passes. Only the constructor allocates.
 class CauseSearch
 {
 public:
@@ -254,15 +255,15 @@ public:
   std::size_t signatures() const noexcept
   {
     return 2 * likelihoods_.size();
-  }  ///< steps of a search: both passes over the signatures
+  }  ///< number of steps of a search, which passes twice over the signatures
 
   void start() noexcept;  ///< begins a search for the next window
   bool isDone() const noexcept { return next_ == signatures(); }
 
-  /// Advances by up to `count` signatures. Residual and point must not change before the search is done.
+  /// Advances the search by up to `count` signatures. `residual` and `point` must be equal in all calls of a search.
   void advance(const WindowResidual& residual, const OperatingPoint& point, std::size_t count) noexcept;
 
-  CausePosterior posterior() const noexcept;  ///< result; valid after the search
+  CausePosterior posterior() const noexcept;  ///< result of the search; valid if isDone
 
 private:
   struct Row
@@ -276,7 +277,7 @@ private:
   /// Sums over the signatures of one cause.
   struct Sum
   {
-    /// `weighted`: logarithm of the likelihood times the weight of the evidence.
+    /// Adds a signature. `weighted`: logarithm of the likelihood, times the factor b.
     void add(double weighted, double prior, double severity) noexcept;
 
     double priors{};
@@ -287,8 +288,8 @@ private:
 
   std::shared_ptr<const SignatureSet> set_;
   std::vector<Row> rows_;
-  std::array<double, CAUSE_COUNT> beforehand_;  // priors (1 + O / O_m) / 2
-  // logarithms, of the rows, then of the unknown causes; after the first pass times b
+  std::array<double, CAUSE_COUNT> beforehand_;  // priors of the causes, (1 + O / O_m) / 2
+  // logarithms of the likelihoods, first of rows_, then of the unknown changes; after the first pass times b
   std::vector<double> likelihoods_;
   double misfit_{ 1.0 };  // f, after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};

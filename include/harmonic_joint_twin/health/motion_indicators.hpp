@@ -3,20 +3,20 @@
 
 namespace hjt
 {
-/// A health indicator that may not be valid. Its value is then 0.
+/// A health indicator; its value is 0 if it is not valid.
 struct Indicator
 {
   bool valid{};
   double value{};
 };
 
-/// Indicators that follow from the motion.
+/// Indicators that the twin computes in each step from the true angles and torques of its model.
 struct MotionIndicators
 {
   Indicator transmission_ratio;   ///< over the last motor turn [-]
   double torsion{};               ///< motor angle / nominal ratio - output angle [rad]
-  Indicator torsional_stiffness;  ///< [N.m/rad]
-  Indicator efficiency;           ///< [-]
+  Indicator torsional_stiffness;  ///< slope of joint torque over torsion [N.m/rad]
+  Indicator efficiency;           ///< output power over input power [-]
   Indicator kinematic_error;      ///< peak to peak over the last motor turn [rad]
 };
 }  // namespace hjt

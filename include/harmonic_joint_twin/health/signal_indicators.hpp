@@ -10,47 +10,47 @@
 
 namespace hjt
 {
-/// Lines by cycles per turn of the motor, with the flexspline held and the circular spline turning. Lines that
-/// isPhaseLocked follow from the two angles alone, so that their phase stays from window to window. The phase of the
-/// other lines changes, because rolling elements creep.
+/// Lines that the indicators contain, each with its cycles per turn of the motor (trackedOrders). A phase-locked line
+/// (isPhaseLocked) depends on the two angles alone, so its phase is equal in all windows. The phase of the other lines
+/// changes, because the balls slip.
 ///
-/// A cracked tooth or rim gives way under load alone, in the direction of the load. Its line changes sign with the load
-/// and vanishes in the mean of a motion with loads of both signs. The part of a line that is in proportion to the load
-/// is therefore a line of its own, from FIRST_LOADED on, with its value at the rated torque. A part that lags in time
-/// behind its cause also changes sign with the direction, and is another line.
+/// A cracked tooth or rim yields only under load, in the direction of the load. Its line changes sign with the load and
+/// vanishes in the mean of a motion with loads of both signs. The part of a line in proportion to the load is therefore
+/// a separate line, from FIRST_LOADED on, with its value at the rated torque. A part that lags behind its cause also
+/// changes sign with the direction of motion, and is a third line.
 enum class Line : std::size_t
 {
-  WAVE_GENERATOR_1,  ///< once a turn: eccentric wave generator
+  WAVE_GENERATOR_1,  ///< once per turn of the motor: an eccentric wave generator turns
   WAVE_GENERATOR_2,  ///< each lobe passes a place of the flexspline
-  WAVE_GENERATOR_4,  ///< harmonics of WAVE_GENERATOR_2
+  WAVE_GENERATOR_4,  ///< WAVE_GENERATOR_4, _6 and _8 are harmonics of WAVE_GENERATOR_2
   WAVE_GENERATOR_6,
   WAVE_GENERATOR_8,
   CIRCULAR_SPLINE_2,  ///< each lobe passes a place of the circular spline
   CAGE_LOBES,         ///< each lobe passes a place of the cage
   CAGE_LOBES_DOUBLE,
   BALL,            ///< a place on a ball meets one of the races
-  BALL_BELOW,      ///< BALL less CAGE_LOBES, BALL_ABOVE plus CAGE_LOBES: the lobes load the ball
-  BALL_FAR_BELOW,  ///< BALL less twice CAGE_LOBES
-  BALL_ABOVE,
+  BALL_BELOW,      ///< order of BALL minus that of CAGE_LOBES: sideband, because the lobes load the ball in turn
+  BALL_FAR_BELOW,  ///< order of BALL minus twice that of CAGE_LOBES
+  BALL_ABOVE,      ///< order of BALL plus that of CAGE_LOBES
   OUTER,            ///< balls roll over a place of the outer race
-  OUTER_BELOW,      ///< OUTER less two, OUTER_ABOVE plus two: the two lobes load that place in turn
-  OUTER_FAR_BELOW,  ///< OUTER less four
-  OUTER_ABOVE,
-  INNER,  ///< balls roll over a place of the inner race, which does not move against the lobes
+  OUTER_BELOW,      ///< order of OUTER minus 2: sideband, because the two lobes load the place in turn
+  OUTER_FAR_BELOW,  ///< order of OUTER minus 4
+  OUTER_ABOVE,      ///< order of OUTER plus 2
+  INNER,  ///< balls roll over a place of the inner race, which turns with the lobes
   INNER_DOUBLE,
-  WAVE_GENERATOR_4_LOAD,  ///< in proportion to the load
+  WAVE_GENERATOR_4_LOAD,  ///< part of WAVE_GENERATOR_4 in proportion to the load
   WAVE_GENERATOR_6_LOAD,
   WAVE_GENERATOR_8_LOAD,
-  WAVE_GENERATOR_4_LOAD_LAG,  ///< in proportion to the load times the sign of the speed
+  WAVE_GENERATOR_4_LOAD_LAG,  ///< part of WAVE_GENERATOR_4 in proportion to the load times the sign of the speed
   WAVE_GENERATOR_6_LOAD_LAG,
   WAVE_GENERATOR_8_LOAD_LAG,
   COUNT
 };
 constexpr auto LINE_COUNT = static_cast<std::size_t>(Line::COUNT);
 constexpr auto FIRST_LOADED = static_cast<std::size_t>(Line::WAVE_GENERATOR_4_LOAD);
-constexpr std::size_t LOADED_ORDERS = 3;  ///< number of orders with loaded lines, from WAVE_GENERATOR_4 on
+constexpr std::size_t LOADED_ORDERS = 3;  ///< number of orders with lines in proportion to the load, from order 4 on
 constexpr std::size_t LOADED_COUNT = 2 * LOADED_ORDERS;
-constexpr std::size_t FIRST_LOCKED = 6;  ///< number of lines without load whose phase stays
+constexpr std::size_t FIRST_LOCKED = 6;  ///< number of phase-locked lines that are not in proportion to the load
 static_assert(FIRST_LOADED + LOADED_COUNT == LINE_COUNT);
 
 constexpr bool isPhaseLocked(std::size_t line)
@@ -65,17 +65,18 @@ constexpr std::size_t index(Line line)
 
 using LineOrders = std::array<double, LINE_COUNT>;  ///< [1/turn of the motor]
 
-/// Law:   cage   f_c = (1 - s) (1 - d / D) / 2           outer race standing, inner race with the motor
+/// Cycles of each line per turn of the motor.
+///
+/// Law:   cage   f_c = (1 - s) (1 - d / D) / 2           outer race at rest, inner race turning with the motor
 ///        outer  Z f_c,   inner  Z (1 - f_c),   ball  twice (1 - s) D / (2 d) (1 - (d / D)^2)
-///        lobe at a place of the cage  2 (1 - f_c),   of the circular spline  2 (1 - 1 / i)
-/// where  d, D, Z  ball diameter, pitch diameter [m], balls [-];  i  nominal ratio [-];  s  `slip` of cage and
-///        balls (bearing.cage_slip) [-]
+///        lobe at a place of the cage  2 (1 - f_c),   lobe at a place of the circular spline  2 (1 - 1 / i)
+/// where  d, D, Z  ball diameter, pitch diameter [m], number of balls;  i  nominal ratio [-];  s  `slip` [-]
 /// Source: rolling-bearing kinematics, contact angle 0 (e.g. Harris, Rolling Bearing Analysis, ch. 25).
 LineOrders trackedOrders(const GearParameters& gear, const BearingParameters& bearing, double slip = 0.0);
 
-/// Scalar indicators from encoders and torque alone. docs/indicators.md has their formulas, their windows and the
-/// faults that change them. The other indicators are, for each LineSignal, the amplitude of every tracked line and the
-/// cosine and sine parts of the lines whose phase stays.
+/// Scalar indicators from encoders and torque alone. docs/indicators.md gives their formulas, their windows and the
+/// faults that change them. The other indicators are, for each LineSignal, the amplitude of every line and the cosine
+/// and sine parts of the phase-locked lines.
 enum class ScalarIndicator : std::size_t
 {
   RATIO_DEVIATION,
@@ -105,14 +106,14 @@ enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
   MOTOR_TORQUE,
-  MOTOR_RIPPLE  ///< ripple of the motor angle, which is too fast for the drive's control and so not in the torque
+  MOTOR_RIPPLE  ///< ripple of the motor angle, which is too fast for the motor's controller to appear in the torque
 };
 inline constexpr std::array ALL_LINE_SIGNALS{ LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE,
                                               LineSignal::MOTOR_RIPPLE };
 constexpr std::size_t LINE_SIGNALS = ALL_LINE_SIGNALS.size();
 
-/// Whether a signal has a line. Lines in proportion to the load are tracked in the ripple alone, because torsion and
-/// current show less of them than noise.
+/// Whether a line is an indicator of a signal. Lines in proportion to the load are indicators of the ripple alone,
+/// because their amplitudes in torsion and current are smaller than the noise.
 constexpr bool hasLine(LineSignal signal, std::size_t line)
 {
   return line < FIRST_LOADED || signal == LineSignal::MOTOR_RIPPLE;
@@ -128,12 +129,12 @@ constexpr std::size_t indexOf(ScalarIndicator indicator)
 {
   return static_cast<std::size_t>(indicator);
 }
-constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< for lines with hasLine
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< only for lines with hasLine
 {
   return line < FIRST_LOADED ? SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line :
                                LOADED_BLOCK + line - FIRST_LOADED;
 }
-constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< for lines with hasLine and isPhaseLocked
+constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< only for hasLine and isPhaseLocked
 {
   return line < FIRST_LOADED ? amplitudeIndex(signal, 0) + FIRST_LOADED + 2 * line :
                                LOADED_BLOCK + LOADED_COUNT + 2 * (line - FIRST_LOADED);
@@ -156,17 +157,17 @@ constexpr bool isFreeAmplitude(std::size_t indicator)
 const char* indicatorName(std::size_t indicator) noexcept;
 const char* indicatorUnit(std::size_t indicator) noexcept;
 
-/// Motion, load and temperature of the joint during a window: means over the window.
+/// Motion, load and temperature of the joint, as means over a window.
 struct OperatingPoint
 {
-  double speed{};          ///< magnitude, motor [rad/s]
-  double direction{};      ///< share of the travel forward less the share back: -1 ... 1 [-]
-  double load{};           ///< magnitude of the load torque; NaN: no estimate of it [N.m]
-  double temperature{};    ///< NaN: not measured [degC]
-  double load_constant{};  ///< part of the load torque that does not depend on the output angle; NaN as load [N.m]
-  double load_sine{};      ///< coefficient of the load torque for the sine of the output angle; NaN as load [N.m]
-  double load_cosine{};    ///< coefficient of the load torque for the cosine of the output angle; NaN as load [N.m]
-  double inertia{};        ///< inertia at the joint by the motor torque, with that of the drive [kg.m^2]
+  double speed{};          ///< magnitude of the motor's speed [rad/s]
+  double direction{};      ///< share of the travel forward minus the share of the travel back: -1 ... 1 [-]
+  double load{};           ///< magnitude of the load torque; NaN: not known [N.m]
+  double temperature{};    ///< temperature of the drive; NaN: not measured [degC]
+  double load_constant{};  ///< part of the load torque that does not depend on the output angle; NaN: unknown [N.m]
+  double load_sine{};      ///< factor of sin(output angle) in the load torque; NaN: load not known [N.m]
+  double load_cosine{};    ///< factor of cos(output angle) in the load torque; NaN: load not known [N.m]
+  double inertia{};        ///< inertia of drive and load at the joint, estimated from the motor torque [kg.m^2]
 };
 
 /// All indicators of one window. NaN: the window did not determine the indicator.
@@ -176,18 +177,18 @@ struct SignalIndicators
 
   double operator[](ScalarIndicator indicator) const noexcept { return values[indexOf(indicator)]; }
   double amplitude(LineSignal signal, Line line) const noexcept { return values[amplitudeIndex(signal, index(line))]; }
-  double phase(LineSignal signal, Line line) const noexcept;  ///< phase of a cosine at motor angle 0; NaN: free [rad]
+  double phase(LineSignal signal, Line line) const noexcept;  ///< of the line as a cosine; NaN: not phase-locked [rad]
 
   std::int64_t stamp{};     ///< end of the window [ns]
-  std::uint64_t windows{};  ///< windows completed since start or reset, this one included; 0: none yet
+  std::uint64_t windows{};  ///< number of windows completed since start or reset, with this one; 0: none yet
   double turns{};           ///< turns of the motor at constant speed in the window [-]
   OperatingPoint point;
   std::array<double, INDICATOR_COUNT> values{};
-  /// standard error of the fit in the unit of the value; 0: not known
+  /// standard error of each value by the fit of the lines, in the unit of the value; 0: not known
   std::array<double, INDICATOR_COUNT> uncertainty{};
 };
 
-/// Indicators `measured` less those of a model with the same inputs. The amplitude of a phase-locked line is that of
-/// the complex difference of both lines, not the difference of both amplitudes.
+/// Indicators `measured` minus the indicators `model` of a twin with the same inputs. The amplitude of a phase-locked
+/// line is the amplitude of the complex difference of the two lines, not the difference of their amplitudes.
 SignalIndicators difference(const SignalIndicators& measured, const SignalIndicators& model) noexcept;
 }  // namespace hjt
