@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-// Number of windows in a mean, so that the mean can leave out an outlier, and number of successive means that change
+// Least number of windows in a mean, so that the mean can omit an outlier, and number of successive means that change
 // the level.
 constexpr int LEAST_EVIDENCE = 3;
 }  // namespace
@@ -36,12 +36,12 @@ std::string whyNotJudged(const Assessment& assessment)
              " windows at this operating point";
     case AssessmentState::NO_REFERENCE:
       return assessment.windows_here == 0 ?
-                 "no healthy reference for this operating point" :
+                 "there is no healthy reference for this operating point" :
                  "the healthy reference needs " + needed + " windows at this operating point, has " + here;
     case AssessmentState::TOO_FEW_WINDOWS:
       return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
     case AssessmentState::OTHER_PAYLOAD:
-      return "the reference has no windows with this payload, load or gain of the current: add windows with such a "
+      return "the reference has no windows with this payload, load or gain of the current: add windows with this "
              "payload and load to the reference, or correct the torque per current";
     case AssessmentState::ASSESSED:
       break;
@@ -111,11 +111,11 @@ void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators*
     assessment_.evidence_count = 0;
   }
   else if (assessment_.largest_score >
-           1.0)  // else this window has no evidence, and the causes stay until the level falls
+           1.0)  // if not, this window has no evidence, and the last causes stay until the level falls
   {
     listEvidence(indicators, scores);
     if (!signatures_->signatures
-             .empty())  // without signatures nothing is known of causes, not even that no known cause fits
+             .empty())  // without signatures the cause is unknown, and NONE would say that no known cause fits
     {
       point_ = indicators.point;
       cause_search_.start();
@@ -142,7 +142,7 @@ void Assessor::setState(AssessmentState state) noexcept
   assessment_.state = state;
   if (state == AssessmentState::ASSESSED)
   {
-    assessment_.windows_needed = 2 * least_windows_ - 1;  // number of windows in that number of successive means
+    assessment_.windows_needed = 2 * least_windows_ - 1;  // windows in least_windows_ successive means
     const bool is_verdict =
         assessment_.level != HealthLevel::OK || assessment_.windows_here >= assessment_.windows_needed;
     assessment_.state = is_verdict ? state : AssessmentState::TOO_FEW_WINDOWS;
@@ -171,8 +171,8 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint&
   return factor > error_factor_ ? HealthLevel::ERROR : HealthLevel::WARN;
 }
 
-/// Changes the level once enough windows in a row agree. Another class of operating points does not refute a level,
-/// because the fault may not show there.
+/// Changes the level after enough successive means agree. Windows of another class of operating points do not lower the
+/// level, because the fault may not show in that class.
 void Assessor::updateLevel(HealthLevel level) noexcept
 {
   if (baseline_.residual().windows < least_windows_)

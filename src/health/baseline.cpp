@@ -19,14 +19,14 @@ namespace
 {
 using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 
-constexpr std::size_t TRIMMED = 5;              // the trimmed mean leaves out one window in 5 at either end
-constexpr std::size_t LEAST_WINDOWS = 3;        // least number of windows of which one can be left out at either end
+constexpr std::size_t TRIMMED = 5;              // the trimmed mean omits one window in 5 at either end
+constexpr std::size_t LEAST_WINDOWS = 3;        // least number of windows of which the mean omits one at either end
 constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // makes a spread 2.2 times as large, which would hide most faults
-constexpr double LEAST_RIDGE = 4e-4;            // square of the noise of the place, 0.02 of half a class
+constexpr double LEAST_RIDGE = 4e-4;            // square of the covariates' noise, 0.02 of half a class [-]
 constexpr std::size_t JUMPS =
-    2;  // number of steps that are not scatter: the onset of a fault, and the step from the oldest to the newest window
+    2;  // number of differences that are not scatter: onset of a fault, and from newest to oldest in the ring buffer
 
-/// Mean of Baseline::Compared::along over some windows.
+/// Mean of Baseline::Compared::along over `count` windows.
 template <class Window>
 PlaceVector meanAlong(const Window* windows, std::size_t count) noexcept
 {
@@ -54,13 +54,13 @@ Deviation deviationOf(double difference, double expected, double spread, const U
 
 constexpr double LOAD_STEP = 0.375;        // width of a class of load, as a share of the rated torque [-]
 constexpr double TEMPERATURE_STEP = 10.0;  // width of a class of temperature [K]
-constexpr double ONE_WAY = 0.5;            // share of travel one way less the other that counts as one direction
-constexpr double REACH = 0.25;  // distance beyond the edge of a class that still counts, as a share of a step [-]
+constexpr double ONE_WAY = 0.5;            // OperatingPoint::direction above which a motion counts as one-way [-]
+constexpr double REACH = 0.25;  // distance beyond the edge of a class that isInReach accepts, as a share of a step [-]
 constexpr double INERTIA_ACCELERATION = 5.0;  // acceleration that converts the inertia to a torque [rad/s^2]
 
 int stepOf(double value, double step) noexcept
 {
-  constexpr double FARTHEST = 1e6;  // damaged recordings have numbers that no int can hold
+  constexpr double FARTHEST = 1e6;  // limit, because damaged recordings have numbers that no int can hold
   return std::isfinite(value) ? static_cast<int>(std::clamp(std::floor(value / step), -FARTHEST, FARTHEST)) : 0;
 }
 
@@ -79,8 +79,8 @@ bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load
          isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
 }
 
-/// Temperature and load -1 ... 1 from one edge of the class to the other and to 1.5 beyond them, the others in the same
-/// steps, the inertia by its torque at INERTIA_ACCELERATION; 0 of what is not measured [-].
+/// Covariates of a point [-]. Temperature and load go from -1 to 1 between the edges of the class, and to 1.5 beyond
+/// them. The payload is in steps of load, the inertia as its torque at INERTIA_ACCELERATION. A missing value is 0.
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
   const auto place = [](double value, int step, double size, double farthest)
@@ -279,7 +279,7 @@ Place Baseline::placeFrom(const ReferenceBin& bin, const OperatingPoint& point) 
   mapped(place) = mapped(here) - mapped(bin.mean_place);
   if (carried_)
   {
-    mapped(place).tail<PLACES - OWN_PLACES>().setZero();  // the model accounts for load and payload
+    mapped(place).tail<PLACES - OWN_PLACES>().setZero();  // the subtracted model has the effects of load and payload
   }
   return place;
 }
@@ -314,7 +314,7 @@ void Baseline::take(const ReferenceBin& bin, const Place& place, const SignalInd
     window.difference[i] = indicators.values[i] - expected_[i];
     if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
     {
-      // The mean of the power lies below the power of the mean.
+      // Correction, because the mean of amplitudes to the power 2/3 is below the mean amplitude to this power.
       window.difference[i] =
           amplitudeChange(sound, window.difference[i]) + std::min(reference.variance / sound, sound) / 6.0;
     }
@@ -323,8 +323,8 @@ void Baseline::take(const ReferenceBin& bin, const Place& place, const SignalInd
 
 Baseline::Average Baseline::average(std::size_t first, std::size_t count, std::size_t indicator) const noexcept
 {
-  std::array<double, MAX_EVIDENCE> differences;  // differences, of which the first `found` count
-  std::array<double, MAX_EVIDENCE> steps;        // half the square of the step from each window to the next
+  std::array<double, MAX_EVIDENCE> differences;  // first `found` values are valid
+  std::array<double, MAX_EVIDENCE> steps;        // half the square of the difference of successive windows
   std::size_t found = 0;
   Average average;
   for (std::size_t i = first; i < first + count; ++i)
@@ -366,14 +366,14 @@ void Baseline::compare(const ReferenceBin& bin, std::size_t first, std::size_t c
   double causes = 0.0;
   double freedoms = 0.0;
   double compared = 0.0;
-  Eigen::Vector3d scalars = Eigen::Vector3d::Zero();  // number of compared scalars, sums of their Uncertainty
+  Eigen::Vector3d scalars = Eigen::Vector3d::Zero();  // number of compared scalars, sums of Uncertainty's two fields
   const PlaceVector along = meanAlong(&compared_[first], count);
   residual_.windows = static_cast<int>(count);
   const std::array<double, INDICATOR_COUNT> alike = varianceOfAlike(bin);
   const std::array<CommonPersistence, TAILS> persistences{ commonPersistence(bin, 0), commonPersistence(bin, 1) };
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
-    const bool sound_known = std::isfinite(residual_.sound[i]);  // the model determined the indicator
+    const bool sound_known = std::isfinite(residual_.sound[i]);  // NaN: the model did not determine the indicator
     residual_.sound[i] = sound_known ? residual_.sound[i] : 0.0;
     const Average average = this->average(first, count, i);
     if (average.weight == 0.0)  // too few windows determined the indicator

@@ -18,8 +18,8 @@ namespace hjt
 {
 namespace
 {
-constexpr int FORMAT = 4;       // changes with the meaning and the stored numbers of the indicators
-constexpr int OWN_NUMBERS = 6;  // count of an indicator's numbers before the fitted ones
+constexpr int FORMAT = 4;       // changes if the meaning or the stored numbers of the indicators change
+constexpr int OWN_NUMBERS = 6;  // count of an indicator's numbers before those of the regression
 
 std::size_t indicatorNamed(const std::string& name)
 {
@@ -56,14 +56,14 @@ ReferenceBin readBin(const YAML::Node& node)
   bin.tail = readNumbers<TAILS>(node["tail"]);
   if (node["information"].size() != PLACES)
   {
-    throw InputError("information must have as many rows as place has numbers");
+    throw InputError("'information' must have as many rows as 'place' has numbers");
   }
   std::transform(node["information"].begin(), node["information"].end(), bin.information.begin(), readNumbers<PLACES>);
   const bool tails_in_range =
       std::all_of(bin.tail.begin(), bin.tail.end(), [](double tail) { return tail >= 0.0 && tail <= MOST_TAIL; });
   if (!mapped(bin.mean_place).allFinite() || !mapped(bin.information).allFinite() || !tails_in_range)
   {
-    throw InputError("place and information must be finite, tail within 0 ... " + numberText(MOST_TAIL));
+    throw InputError("'place' and 'information' must be finite, tail within 0 ... " + numberText(MOST_TAIL));
   }
   for (const auto& entry : node["indicators"])
   {
@@ -82,8 +82,8 @@ ReferenceBin readBin(const YAML::Node& node)
       throw InputError(
           name +
           " must be [windows >= 1, mean, spread >= 0, spread from window to window >= 0, standard error "
-          ">= 0, magnitude >= 0], and ridge > 0, degrees of freedom >= 0, slopes over the bin's 'place' and "
-          "shares of common causes or none");
+          ">= 0, magnitude >= 0]; a list with a regression continues with ridge > 0, degrees of freedom >= 0, "
+          "slopes over 'place' and shares of common causes");
     }
     Reference& reference = bin.references[indicatorNamed(name)];
     reference.count = static_cast<int>(numbers[0]);
@@ -114,7 +114,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     const YAML::Node list = file["baseline"];
     if (!list.IsSequence() || list.size() == 0)
     {
-      throw InputError("no list 'baseline' of operating bins");
+      throw InputError("it has no list 'baseline' of operating points");
     }
     if (!file["format"] || file["format"].as<int>() != FORMAT)
     {
@@ -124,12 +124,12 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
     {
       throw InputError("its load_step is " + numberText(step) + " [N.m], expected " + numberText(loadStep(parameters)) +
-                       ", three eighths of life.rated_torque; save it again with "
+                       ", which is three eighths of life.rated_torque; save the file again with "
                        "this gear's parameters");
     }
     if ((file["model"] && file["model"].as<bool>()) != less_model)
     {
-      throw InputError(less_model ? "it was saved without a model, and a model is subtracted here" :
+      throw InputError(less_model ? "it was saved without --model, which is given here" :
                                     "it was saved with --model, which is missing here");
     }
     for (const YAML::Node& node : list)
@@ -160,19 +160,18 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
     }
     return text;
   };
-  text << "# Healthy indicators by operating point: octave of motor speed, direction, steps of load_step [N.m] and 10 "
-          "K.\n"
-          "# Place in it: temperature, its square, the load's mean magnitude, its part that stays over the angle, its "
-          "parts over sine\n# and cosine of the angle, inertia.\n"
-          "# Information of the slopes: products of the places. Tail of scalars and of lines: 1 / degrees of freedom, "
-          "0: normal.\n"
-          "# Each indicator: [windows, mean, spread, spread from one window to the next, standard error of a line over "
-          "the least\n# one of its signal (0: not known), mean magnitude, ridge and degrees of freedom of the slopes, "
-          "slopes over the place,\n# share of the spread that goes with each common cause], units as in "
+  text << "# Healthy indicators by operating point. speed: octave of the motor's speed; load: in steps of load_step; "
+          "temperature: in steps of 10 K.\n"
+          "# place: mean covariates of the windows: temperature, its square, mean magnitude of the load, constant part "
+          "of the load,\n# its factors of sine and cosine of the output angle, inertia.\n"
+          "# information: information on the slopes over the covariates. tail: 1 / degrees of freedom of scalars and "
+          "of lines,\n# 0: normal. indicators: [windows, mean, spread, spread from window to window, standard error of "
+          "a line over the\n# least of its signal (0: not known), mean magnitude, ridge and degrees of freedom of the "
+          "slopes, slopes over the\n# covariates, loadings of the spread on the common causes], units as in "
           "docs/indicators.md.\n"
           "format: "
        << FORMAT << "\nload_step: " << numberText(baseline.loadStep()) << "\nmodel: " << (less_model ? "true" : "false")
-       << "  # whether a model's indicators were subtracted\nbaseline:\n";
+       << "  # whether the indicators of a model were subtracted\nbaseline:\n";
   FitRoom room;
   for (std::size_t b = 0; b < baseline.bins().size(); ++b)
   {

@@ -16,17 +16,17 @@ namespace
 {
 constexpr std::array TOGETHER{
   causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR), causeOf(FaultKind::LUBRICANT_DEGRADATION)
-};                            // causes that are wear by use (docs/life.md)
-constexpr double LESS = 0.4;  // severity of a wear over the severity of a larger wear at the same time [-]
+};                            // causes that grow together by use (docs/life.md)
+constexpr double LESS = 0.4;  // severity of a smaller wear over that of the largest wear of the drive [-]
 
-/// Causes without signatures: an unknown fault of a strength S, a brake that drags, and noise of the sensors.
+/// Changes without signatures: an unknown change with the strength S, a dragging brake, or noise of the sensors.
 struct Unknown
 {
-  double strength;  // S
-  double drag;      // additional friction, equal at every speed, over the sound running torque: a brake
+  double strength;  // S of an unknown change
+  double drag;      // friction by a brake, equal at every speed, over the sound running torque
   double noise;     // additional noise of the sensors, as a share
 
-  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // a brake or a sensor fails less often than a gear wears
+  double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
 };
 constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 10.0, 0.0, 0.0 },
@@ -41,7 +41,7 @@ constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 0.0, 0.0, 0.5 },
                                               { 0.0, 0.0, 1.0 } } };
 
-/// Signature of a brake or of noise. Noise widens the spread of peaks from turn to turn and of every line.
+/// Changes by a dragging brake and by noise. Noise increases the kinematic error (peak to peak).
 Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
 {
   constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
@@ -114,12 +114,13 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
       const std::size_t indicator = amplitudeIndex(signal, line);
       if (!isPhaseLocked(line))
       {
-        // A fault only makes such a line grow, so an amplitude below the mean is no fault.
+        // A fault only increases the amplitude of a line with a free phase, so a decrease is no evidence.
         const double score = std::max(deviations[indicator].score, 0.0);
         take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
         continue;
       }
-      // How far the line's vector has moved, less one degree of freedom, so that noise scores as much as elsewhere.
+      // Length of the change of the line's vector. Its square is reduced by 1, one of two degrees of freedom, so that
+      // noise has the same mean square score as in other indicators.
       const Deviation& cosine = deviations[cosineIndex(signal, line)];
       const Deviation& sine = deviations[sineIndex(signal, line)];
       const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;
@@ -138,7 +139,7 @@ void CauseSearch::Sum::add(double weighted, double prior, double severity) noexc
   second += weight * severity * severity;
 }
 
-/// Rows of single signatures, then rows of signatures that come together.
+/// Rows of single signatures, then rows of two or three signatures that occur together.
 std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
 {
   std::vector<Row> rows;
@@ -201,7 +202,7 @@ CauseSearch::CauseSearch(std::shared_ptr<const SignatureSet> set)
   start();
 }
 
-/// Prior weights of the causes: half by their rated occurrence, half equal for all.
+/// Prior weights of the causes: one half in proportion to their rated occurrence, one half equal for all.
 std::array<double, CAUSE_COUNT> CauseSearch::priorsOf(const SignatureSet& set)
 {
   const std::array<double, CAUSE_COUNT>& rated = set.occurrence;
@@ -263,7 +264,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
       const double prior = rows_[row].prior * (OTHER_MOTION + likeness(first.motion, point));
       Sum& sum = sums_[static_cast<std::size_t>(first.cause)];
       sum.add(likelihoods_[row], prior, first.severity);
-      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // combined causes add to the prior of single causes
+      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // combined rows add to the prior of single rows
     }
     else
     {

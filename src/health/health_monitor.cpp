@@ -14,7 +14,7 @@ namespace
 constexpr int MARKS_PER_TOOTH = 16;
 constexpr double MIN_TRAVEL = 1e-6;  // least travel of the output, as a share of its nominal travel [-]
 constexpr double FARTHEST_PLACE =
-    1e15;  // farthest place in marks; beyond it a double cannot separate neighbouring marks
+    1e15;  // farthest motor angle in marks, because a larger double cannot separate neighbouring marks
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
@@ -103,7 +103,7 @@ Indicator TurnWindow::kinematicError() const noexcept
     lowest = std::min(lowest, errors.minCoeff());
     highest = std::max(highest, errors.maxCoeff());
   };
-  // The turn lies in the ring in two straight pieces; between them one mark that is older than it.
+  // The marks of the turn are two contiguous pieces of the ring buffer, with one older mark between the pieces.
   const Eigen::Index size = torsions_.size();
   const Eigen::Index first = newest_ + 1 == size ? 1 : 0;
   widen(first, newest_ + 1 - first, newest_);
@@ -114,8 +114,8 @@ Indicator TurnWindow::kinematicError() const noexcept
   return { true, highest - lowest };
 }
 
-/// Keeps `marks` more marks, the first of them `place` marks after the last sample, on a line with that `slope` from
-/// its torsion.
+/// Stores the torsion at the next `marks` marks, extrapolated from the last sample with `slope` [rad per mark]. The
+/// first mark is `place` marks after the last sample.
 void TurnWindow::keep(double place, double slope, std::int64_t marks) noexcept
 {
   count_ = std::min<Eigen::Index>(count_ + marks, torsions_.size());

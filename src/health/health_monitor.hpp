@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// Inputs of the drive's torsion at one instant.
+/// Torsion of the drive at one instant, with the quantities that it depends on.
 struct TorsionSample
 {
   double torsion;       ///< motor angle / ratio - output angle [rad]
@@ -26,8 +26,8 @@ struct TorsionSample
 /// Two first-order lags in a row.
 ///
 /// Law:   y = F x,   F = 1 / (1 + s t)^2,   t = TIME
-/// Quantities that are smoothed together lag by the same 2 t, so that their values of one instant belong together in
-/// any motion.
+/// where  x, y  quantity, smoothed quantity;  s  Laplace variable
+/// All quantities lag by the same time 2 t, so their smoothed values belong to one instant in any motion.
 template <int COUNT>
 class TwiceSmoothed
 {
@@ -37,7 +37,7 @@ public:
 
   void reset() noexcept { age_ = -1.0; }
 
-  /// `seconds`: time since the values before [s].
+  /// `seconds`: time since the previous values [s].
   void update(const Values& values, double seconds) noexcept
   {
     if (age_ < 0.0)
@@ -55,9 +55,9 @@ public:
   }
 
   const Values& values() const noexcept { return second_; }
-  const Values& rates() const noexcept { return rates_; }  ///< change per second since the update before
+  const Values& rates() const noexcept { return rates_; }  ///< change of `values` per second in the last update
 
-  /// Whether the values from before the first update are forgotten.
+  /// Whether the initial transient of the filter has decayed.
   bool settled() const noexcept { return age_ > 12.0 * TIME; }
 
 private:
@@ -67,7 +67,7 @@ private:
   double age_{ -1.0 };  // [s]; < 0: no values yet
 };
 
-/// Play of a quantity (Prandtl and Ishlinskii's operator): the direction in which the quantity moved last.
+/// Play operator (Prandtl and Ishlinskii): the direction in which a quantity moved last.
 class Play
 {
 public:
@@ -85,28 +85,31 @@ private:
   double centre_{};
 };
 
-/// Torsion under a swinging load, over one window.
+/// Stiffness, lost motion and hysteresis under a load that swings, over one window.
 ///
-/// Torsion as read and torque, inertia's share in it, are TwiceSmoothed: x = F x_0,  T = F T_0 + J F d^2(psi) / dt^2
-/// where  x_0, T_0  torsion as read [rad], torque at one end of the gear [N.m]
+/// The estimate smooths the measured torsion and adds inertia to the torque: x = F x_0,  T = F T_0 + J F d^2(psi)/dt^2
+/// where  F          filter of TwiceSmoothed
+///        x_0, T_0  measured torsion [rad], torque at one end of the gear [N.m]
 ///        J, psi    inertia between that end and the gear [kg.m^2], its angle [rad]
 /// Law:   x = a - h p(T) + q p(theta) + T / K1 + c clamp(T, -T0, T0) + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0)
 ///            + e_c cos(phi) + e_s sin(phi),  least squares over the samples
 /// where  x, T         torsion [rad], torque through the gear [N.m]
 ///        theta, phi   motor angle, output angle [rad]
-///        p            play: of T as wide as indicators.lost_motion_torque, of theta as DIRECTION_PLAY
-///        2 h, 2 q     width of the loop by dry friction in the cup, which changes sign with the torque, and by that of
-///                     the teeth, which changes sign with the motion [rad]
-///        T0, T1       indicators.lost_motion_torque, indicators.stiffness_torque
-///        c            softness about no load: clearance, worn teeth
-///        e            eccentricity of the output encoder [rad]. A weight twists the drive as sin(phi) too: inertia
-///                     tells them apart. With q the mean square of a column of e that the others leave, e comes out at
-///                     q^2 / (q^2 + ECCENTRICITY_LEFT^2) of it: all of it, or none. What is left of it is the same in
-///                     1 / K1 and 1 / K2 of all windows of a motion, so that their changes have nothing of it
+///        p            Play, with the width indicators.lost_motion_torque for T and DIRECTION_PLAY for theta
+///        2 h, 2 q     width of the loop by dry friction in the cup (sign of the torque's change) and in the teeth
+///                     (sign of the motion) [rad]
+///        T0, T1       indicators.lost_motion_torque, indicators.stiffness_torque [N.m]
+///        a, K1, K2    offset [rad], stiffness below and above T1 [N.m/rad]
+///        c            additional compliance near zero load, by clearance and worn teeth [rad/(N.m)]
+///        e            eccentricity of the output encoder [rad]. A weight also twists the drive by sin(phi); only
+///                     inertia separates weight and eccentricity. With u the mean square of the column of e that the
+///                     other columns do not explain, the ridge keeps the share u^2 / (u^2 + ECCENTRICITY_LEFT^2) of e,
+///                     almost all or almost none. The error of 1 / K1 and 1 / K2 that remains is equal in all windows
+///                     of a motion, so it does not affect their changes
 /// Lost motion  angle between the middles of the loop at T0 and -T0: 2 T0 (1 / K1 + c) [rad]
-/// Loop area    integral of T over the torsion from one maximum of T to the next, mean of the loops that closed [J]
-/// K1 is valid if T spans health.stiffness_torque_span between -T1 and T1, K2 if it does so beyond T1 on one side, and
-/// the lost motion if T reaches 2 T0 on both sides.
+/// Loop area    integral of T over the torsion from one maximum of T to the next, mean over the closed loops [J]
+/// K1 is valid if T spans health.stiffness_torque_span within -T1 ... T1, and K2 if T exceeds T1 by this span on one
+/// side. The lost motion is valid if T reaches 2 T0 on both sides.
 class TorsionLoopEstimate
 {
 public:
@@ -129,10 +132,10 @@ public:
     reset();
   }
 
-  /// No torsion was read.
+  /// Restarts the filter, because a sample has no torsion.
   void interrupt() noexcept { smoothed_.reset(); }
 
-  /// The next window.
+  /// Begins the next window.
   void reset() noexcept
   {
     regression_.reset();
@@ -143,8 +146,8 @@ public:
     loops_ = 0;
   }
 
-  /// Every sample in its turn. `given`: as read, the torque without inertia's; `speed`: of psi [rad/s]; `seconds`:
-  /// since the last sample.
+  /// Adds the next sample. `given`: as measured, torque without that of the inertia; `speed`: of psi [rad/s];
+  /// `inertia`: J [kg.m^2]; `seconds`: since the last sample.
   void add(const TorsionSample& given, double speed, double inertia, double seconds) noexcept
   {
     TwiceSmoothed<5>::Values read;
@@ -213,14 +216,15 @@ private:
   static constexpr int SINE = 7;
   static constexpr double MAX_ERROR = 0.1;  // largest standard error of the slope, as a share of the slope [-]
   static constexpr double MAX_INFLATION =
-      10.0;  // largest inflation of the branch's variance; larger if the branches lie at different torques [-]
+      10.0;  // largest inflation of the variance of h; it is larger if the branches lie at different torques [-]
   static constexpr double DIRECTION_PLAY = 0.1;  // play of the motor angle, far above an encoder's noise [rad]
-  // What the law leaves of the torsion of a sound drive, 15 urad rms, over an eccentricity, 0.44 mrad
-  // (config/real_sensors.yaml), squared, is 1.2e-3: what tells e must be more [-].
+  // Mean square of e's column, as far as the other columns do not explain it, that determines e [-]. It exceeds (15
+  // urad / 0.44 mrad)^2, by the law's residual for a sound drive and an eccentricity (config/real_sensors.yaml).
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
-  static constexpr double LEAST_TOLD = 1e-6;  // of q [-]
+  static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
 
-  /// Adds a ridge for each part of e, by how much of its column the other columns leave. False: too few samples.
+  /// Adds a ridge for each part of e that grows as the other columns explain more of its column. False: too few
+  /// samples.
   bool holdEccentricity() noexcept
   {
     if (!regression_.fit(COLUMNS))
@@ -257,7 +261,7 @@ private:
     extreme_ = rising_ ? std::max(extreme_, joint_torque) : std::min(extreme_, joint_torque);
     if (std::abs(joint_torque - extreme_) > play_)
     {
-      // Every maximum is seen equally late, so that a loop gains at its end what it lacks at its start.
+      // Each maximum is detected equally late, so a loop gains at its end the area that it lacks at its start.
       if (rising_)
       {
         area_ += past_first_ ? work_ : 0.0;
@@ -275,7 +279,7 @@ private:
   double play_;  // T0 [N.m]
   Play torque_play_;
   Play direction_play_;
-  TwiceSmoothed<5> smoothed_;  // a TorsionSample and the speed of psi
+  TwiceSmoothed<5> smoothed_;  // fields of TorsionSample and speed of psi
   RunningRegression regression_;
   double lowest_{};   // lowest torque in the regression [N.m]
   double highest_{};  // highest torque in the regression [N.m]
@@ -286,20 +290,20 @@ private:
   double torsion_{};   // torsion of the last sample [rad]
   double torque_{};    // torque of the last sample [N.m]
   double work_{};      // integral of the torque over the torsion since the last maximum of the torque [J]
-  bool past_first_{};  // the torque has had a maximum, so the present loop is complete when the next one comes
+  bool past_first_{};  // whether the torque has had a maximum, so that the next maximum closes a loop
   double area_{};      // sum of the areas of the closed loops [J]
   int loops_{};
 };
 
-/// The torsion over the last turn of the motor: transmission ratio and kinematic error.
+/// Computes transmission ratio and kinematic error from the torsion over the last turn of the motor.
 ///
-/// The class keeps the torsion at marks that are evenly spaced in the motor angle, 16 for each tooth of the flexspline,
-/// because the error of a sound gear repeats every tooth pitch. The torsion at a mark is interpolated linearly between
-/// the two samples around it. The store holds one turn at any speed.
+/// The class stores the torsion at marks that are evenly spaced in the motor angle. Each tooth of the flexspline has 16
+/// marks, because the error of a sound gear repeats every tooth pitch. The torsion at a mark is interpolated linearly
+/// between the samples before and after it. The store holds one turn at any speed.
 ///
-/// A return to the mark before the last one is a reversal and empties the store. A smaller return (up to 2 mrad with
-/// 200 teeth) is a tremor about one place and keeps the store. Both indicators are valid once the store is full: after
-/// one turn and one or two marks of travel in one direction since start or reversal.
+/// If the motor returns to the mark before the last one, the class empties the store. A smaller return (up to 2 mrad
+/// with 200 teeth) keeps the store. The two indicators are valid if the store is full, that is, after one turn and one
+/// or two marks of travel in one direction since the start or the last reversal.
 class TurnWindow
 {
 public:
@@ -311,13 +315,13 @@ public:
   /// the store.
   void update(double motor_angle, double torsion) noexcept;
 
-  /// Motor travel over output travel, from the instant when the motor stood exactly one turn behind until now [-].
-  /// It is not valid either if the output moved by less than a millionth of its nominal travel.
+  /// Travel of the motor over travel of the output, over the last turn of the motor [-]. It is not valid if the store
+  /// is not full, or if the output moved by less than a millionth of its nominal travel.
   Indicator transmissionRatio() const noexcept;
 
-  /// Peak to peak of the torsion at the marks of the last turn, less the straight line through the two ends of that
-  /// turn [rad]. The line removes a torsion that grows with a changing load. It does not change errors with a whole
-  /// number of cycles in a turn, as a line by least squares would, because those are equal at both ends.
+  /// Peak to peak of the torsion at the marks of the last turn, minus the straight line through the ends of the turn
+  /// [rad]. The line removes the torsion by a load that changes steadily. It does not affect errors with a whole number
+  /// of cycles per turn, because these are equal at both ends. A line by least squares would affect them.
   Indicator kinematicError() const noexcept;
 
 private:
@@ -329,25 +333,25 @@ private:
   std::int64_t marks_per_turn_;
   double marks_per_radian_;
 
-  // Places are motor angles in marks, mirrored so that they grow in the direction of travel.
+  // A place is the motor angle in marks, with the sign that makes it grow in the direction of travel.
   bool started_{};
   int direction_{ 1 };
   double place_{};              // place of the last sample
   double torsion_{};            // torsion of the last sample [rad]
   std::int64_t newest_mark_{};  // number of the last mark that the motor reached
-  Eigen::VectorXd torsions_;    // ring of one turn and one mark, both ends included
+  Eigen::VectorXd torsions_;    // ring buffer of torsions at the marks of one turn and one mark, ends included [rad]
   Eigen::Index newest_{};
   Eigen::Index count_{};
 };
 
-/// Exponential forgetting in time: a value of age `window` counts 1/e of a new value.
+/// Exponential forgetting in time: a value with the age `window` has the weight 1/e.
 class Forgetting
 {
 public:
   /// `window`: time constant [s].
   explicit Forgetting(double window) : window_(window) {}
 
-  /// Share that is kept over `elapsed` [ns]. The share of the last step is stored, because most steps are equal.
+  /// Factor by which a weight falls over `elapsed` [ns]. The last factor is stored, because most steps are equal.
   double kept(std::int64_t elapsed) noexcept
   {
     if (elapsed != elapsed_)
@@ -366,17 +370,18 @@ private:
 
 /// Efficiency of the drive between the motor shaft and the circular spline.
 ///
-/// Law:   eta = <P_j> / <P_m>  driving, both > 0;   eta = <P_m> / <P_j>  driven back by the load, both < 0
-/// where  P_m  motor torque times motor speed: power from the motor                                   [W]
-///        P_j  joint torque times output speed: power from the circular spline to the load            [W]
+/// Law:   eta = <P_j> / <P_m>  if the motor drives, both means > 0;   eta = <P_m> / <P_j>  if the load drives, both < 0
+/// where  P_m  power from the motor: motor torque times motor speed [W]
+///        P_j  power from the circular spline to the load: joint torque times output speed [W]
 ///        <>   exponential mean over `health.averaging_time`
 ///
-/// Not valid
-/// - before one window has passed,
-/// - near standstill: a mean power below 0.1 W,
-/// - unless power flows in one direction through the drive: both means have one sign, and each is at least 90 % of the
-///   mean of its magnitude,
-/// - when the output power is more than 1 % larger than the input power: then inertia slows down.
+/// The efficiency is not valid
+/// - during the first `health.averaging_time`,
+/// - near standstill, with a mean power below 0.1 W,
+/// - if the power does not flow steadily in one direction: both means must have one sign, and each must be at least 90
+/// %
+///   of the mean magnitude of its power,
+/// - if the output power is more than 1 % larger than the input power, because a mass slows down.
 class EfficiencyEstimate
 {
 public:
@@ -392,7 +397,7 @@ public:
     joint_ = {};
   }
 
-  /// [ns], [W], [W]
+  /// `elapsed` [ns]; powers [W].
   void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept
   {
     age_ += elapsed;
@@ -419,7 +424,7 @@ public:
 
 private:
   static constexpr double MIN_POWER = 0.1;     // [W]
-  static constexpr double STEADY_SHARE = 0.9;  // least share of the mean magnitude [-]
+  static constexpr double STEADY_SHARE = 0.9;  // least magnitude of a mean power over the mean of its magnitude [-]
   static constexpr double MAX_EFFICIENCY = 1.01;
 
   /// Mean of a power and of its magnitude.
@@ -451,7 +456,7 @@ private:
   PowerMean joint_;
 };
 
-/// Range of a quantity over the present window of fixed length and the window before it.
+/// Range of a quantity over the current window of fixed length and the previous window.
 class RecentSpan
 {
 public:
@@ -486,7 +491,7 @@ private:
   };
 
   std::int64_t window_;
-  std::int64_t age_{};  // age of the present window [ns]
+  std::int64_t age_{};  // age of the current window [ns]
   bool started_{};
   Extremes running_;
   Extremes before_;
@@ -494,12 +499,12 @@ private:
 
 /// Torsional stiffness of the drive: slope of the joint torque over the torsion.
 ///
-/// Recursive least squares of  T = T_0 + K tau. Each sample has the time since the last one as its weight and is
-/// forgotten exponentially over health.averaging_time.
+/// Law:   T = T_0 + K tau,  recursive least squares
+/// The weight of a sample is the time since the last sample, and decays exponentially with health.averaging_time.
 /// where  T    joint torque                          [N.m]
 ///        tau  torsion                               [rad]
 ///        K    torsional stiffness                   [N.m/rad]
-/// Valid while the joint torque has spanned `health.stiffness_torque_span` within this window or the one before it.
+/// The stiffness is valid if the torque spanned `health.stiffness_torque_span` in the current or the previous window.
 class StiffnessEstimate
 {
 public:
@@ -520,7 +525,7 @@ public:
     product_ = 0.0;
   }
 
-  /// Elapsed [ns]
+  /// `elapsed`: time since the last sample [ns]; `torsion` [rad]; `joint_torque` [N.m].
   void update(std::int64_t elapsed, double torsion, double joint_torque) noexcept
   {
     recent_torque_.update(elapsed, joint_torque);
@@ -551,7 +556,7 @@ private:
   double torque_span_;
   Forgetting forgetting_;
   RecentSpan recent_torque_;
-  // Weighted sums about the running means: plain sums would lose the slope in their difference.
+  // Weighted sums about the running means, because differences of plain sums would lose the slope in rounding errors.
   double weight_{};          // [s]
   double torsion_mean_{};    // [rad]
   double torque_mean_{};     // [N.m]
@@ -559,7 +564,7 @@ private:
   double product_{};         // [N.m rad s]
 };
 
-/// The joint of the model at one instant, with its true angles in place of encoder readings.
+/// State of the model's joint at one instant, with true angles instead of encoder readings.
 struct HealthSample
 {
   std::int64_t stamp{};      ///< [ns]
@@ -567,11 +572,11 @@ struct HealthSample
   double motor_velocity{};   ///< [rad/s]
   double output_angle{};     ///< [rad]
   double output_velocity{};  ///< [rad/s]
-  double motor_torque{};     ///< applied [N.m]
+  double motor_torque{};     ///< torque that the motor applies to its shaft [N.m]
   double joint_torque{};     ///< torque of the mesh on the circular spline [N.m]
 };
 
-/// Computes MotionIndicators of the joint step by step, in fixed memory. Only the constructor allocates.
+/// Computes the MotionIndicators of a joint step by step. Only the constructor allocates.
 class HealthMonitor
 {
 public:
@@ -589,7 +594,7 @@ public:
     efficiency_.reset();
   }
 
-  /// Stamps must ascend. Call `reset` before a restart.
+  /// Adds a sample. Stamps must ascend; call `reset` before a restart of time.
   void update(const HealthSample& sample) noexcept
   {
     torsion_ = sample.motor_angle / nominal_ratio_ - sample.output_angle;

@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// A line with the order `order` + `by_slip` s at a slip s.
+/// A line whose order at a slip s is `order` + `by_slip` s.
 struct BearingSlip::BearingLine
 {
   std::size_t line{};
@@ -24,7 +24,7 @@ namespace
 {
 using Complex = std::complex<double>;
 
-constexpr double BIN = TWO_PI / 8.0;  // width in the motor angle in which a line that slips stays in phase [rad]
+constexpr double BIN = TWO_PI / 8.0;  // range of the motor angle in which slip hardly changes the phase of a line [rad]
 constexpr std::array SEARCHED{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
@@ -42,8 +42,8 @@ double speedSpread(const std::vector<LineSample>& samples)
   return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
 }
 
-/// Squares of a line's Fourier sums by slip, in units of the noise about the line. `sums`: those of its bins without
-/// slip.
+/// Squares of a line's Fourier sums for each slip, divided by the noise near the line. `sums`: Fourier sums over each
+/// BIN of the angle, without slip.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
   std::vector<Complex> turned(sums.size());
@@ -82,7 +82,7 @@ BearingSlip::BearingSlip(const Parameters& parameters)
 {
 }
 
-/// Lines whose order slip changes by so much that the noise about them is known.
+/// Lines whose order changes with slip by so much that the search also shows the noise near the line.
 std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& fitted) const
 {
   constexpr double MOVES = 5.0;  // least change of the order for a slip of 1 [1/turn]
@@ -103,11 +103,11 @@ std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& f
 double BearingSlip::find(const OrderTracker& fitted) const
 {
   constexpr double CLEARLY = 25.0;
-  constexpr double FEWEST_TURNS = 10.0;  // least number of turns that separate a line that slips from one that does not
+  constexpr double FEWEST_TURNS = 10.0;  // least number of turns that separates a line with slip from one without
   constexpr double MOST_TURNS =
       500.0;  // largest number of turns, because time and memory grow with it and a damaged angle may have any number
-  constexpr double EVEN = 0.1;   // spread of a speed at which folded lines are sharp
-  constexpr double FINE = 0.25;  // step of the slip, as a share of what the fastest line resolves [-]
+  constexpr double EVEN = 0.1;   // speedSpread below which folded lines are sharp [-]
+  constexpr double FINE = 0.25;  // step of the slip, as a share of the resolution of the fastest line [-]
   const std::vector<BearingLine> lines = linesOf(fitted);
   const auto [least, most] =
       std::minmax_element(samples_.begin(), samples_.end(),

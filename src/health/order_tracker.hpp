@@ -15,8 +15,8 @@
 
 namespace hjt
 {
-/// Cosine and sine of many multiples of one angle. For a multiple that is the sum or the difference of two earlier
-/// multiples, up to rounding, the class multiplies their rotations in place of computing a sine and a cosine.
+/// Cosine and sine of many multiples of one angle. If a multiple is the sum or the difference of two earlier multiples,
+/// the class multiplies the rotations of these two and computes no sine and cosine.
 template <std::size_t COUNT>
 class AngleMultiples
 {
@@ -56,7 +56,7 @@ private:
     double multiple{};
     std::size_t first{};
     std::size_t second{};
-    double sign{};  // sign of the second multiple; 0: this multiple is neither sum nor difference of two others
+    double sign{};  // sign of the second multiple; 0: the multiple is neither sum nor difference of two others
   };
 
   static Rule rule(const std::array<double, COUNT>& multiples, std::size_t k)
@@ -87,13 +87,13 @@ struct LineSample
 {
   double motor_angle{};      ///< [rad]
   double output_angle{};     ///< [rad]
-  double direction{};        ///< +1 or -1
+  double direction{};        ///< direction of motion, +1 or -1
   double speed{};            ///< mean speed over about a turn of the motor, signed [rad/s]
   double load{};             ///< load at the joint; 0 if unknown [N.m]
   double kinematic_error{};  ///< motor angle / ratio - output angle [rad]
   double motor_torque{};     ///< [N.m]
-  double ripple{};           ///< ripple of the motor angle, see RippleFilter [rad]
-  double weight{ 1.0 };      ///< inverse of the noise's variance, 1 where the motion is calm [-]
+  double ripple{};           ///< ripple of the motor angle (RippleFilter) [rad]
+  double weight{ 1.0 };      ///< inverse of the noise's variance, relative to that of a calm motion [-]
 };
 
 struct LineFit
@@ -101,31 +101,33 @@ struct LineFit
   bool valid{};
   double cosine{};  ///< [rad] or [N.m]
   double sine{};
-  double error{};  ///< standard error of the amplitude
+  double error{};  ///< standard error of the amplitude, in the unit of the line
 
   double amplitude() const noexcept { return std::hypot(cosine, sine); }
 };
 
-/// Amplitude and phase of lines at known orders, in all LineSignals at once.
+/// Estimates amplitude and phase of lines at known orders, in all LineSignals together.
 ///
-/// Law:   y(t) = b . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  least squares over one
-///        window, by the samples' weights
-/// where  theta  motor angle of the very sample [rad];  o_k  order [1/turn]
-///        m      1; of a line in proportion to the load T / T_r less its mean, of one that lags also d T / T_r less its
-///               mean, so that the line without either is that of the mean load;  T_r  rated torque, d  direction
-///        n      what is no line: 1, direction, speed, cos and sin of the output angle (weight, runout), load T, T |T|,
-///               T^3 (the torsion is no straight line over the load)
-/// The tracker resamples nothing and needs no constant speed: a line is a function of the angle, in either direction
-/// and at any speed, and the motion may go back and forth. Lines that are fitted at once do not leak into each other.
+/// Law:   y(t) = c . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  weighted least squares
+/// over
+///        the samples of a window
+/// where  y      a LineSignal;  a, b, c  coefficients;  theta  motor angle [rad];  o_k  order [1/turn]
+///        m      1 for a line that is not in proportion to the load, so that it is the line at the mean load. Otherwise
+///               T / T_r minus its mean or, for a part that lags, d T / T_r minus its mean
+///        T, d   load [N.m], direction;  T_r  rated torque [N.m]
+///        n      regressors that are no lines: 1, d, speed, cos and sin of the output angle (weight, runout), and T,
+///               T |T|, T^3 (because the torsion is not linear in the load)
+/// The tracker does not resample. Speed and direction may change, because a line is a function of the angle. A common
+/// fit of all lines keeps one line from leaking into another.
 ///
-/// Not valid, and not fitted: a line above 0.8 of half the samples a turn. Not valid either: one that the travel cannot
-/// tell from another (variance inflated more than fourfold: orders o1, o2 need about 0.3 / |o1 - o2| turns in all, 15
-/// for 1.98 beside 2). A line in proportion to the load is fitted if the load varies, one that lags if the motion goes
-/// both ways.
+/// A line is not fitted if its order is above 0.8 times half the samples per turn. A line is not valid if the travel
+/// does not separate it from another line (MAX_INFLATION). Orders o1 and o2 need about 0.3 / |o1 - o2| turns, for
+/// example 15 for 1.98 and 2. Lines in proportion to the load need a load that varies, and those that lag also need
+/// motion in both directions.
 class OrderTracker
 {
 public:
-  /// Torque [N.m].
+  /// `rated_torque` [N.m].
   OrderTracker(const LineOrders& orders, double rated_torque)
     : rated_torque_(rated_torque)
     , orders_(sorted(orders))
@@ -137,7 +139,7 @@ public:
   {
   }
 
-  /// Forgets the window, but not the last fit.
+  /// Removes the samples of the window. The results of the last fit stay.
   void reset() noexcept { regression_.reset(); }
 
   void add(const LineSample& sample) noexcept
@@ -147,7 +149,7 @@ public:
     regression_.add(row_, targets_, sample.weight);
   }
 
-  /// Fits the lines. `angle_step`: mean travel between two samples [rad]. False: too few samples.
+  /// Fits the lines. `angle_step`: mean travel of the motor between two samples [rad]. False: too few samples.
   bool fit(double angle_step) noexcept
   {
     const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
@@ -179,8 +181,7 @@ public:
     return fit;
   }
 
-  /// Whether the last fit determined every line. A line that it did not determine can have any value outside the
-  /// window.
+  /// Whether the last fit separated all its lines. If not, the fit predicts nothing outside its window.
   bool complete() const noexcept
   {
     bool determined = used_ > FIRST_LINE;
@@ -191,10 +192,10 @@ public:
     return determined;
   }
 
-  /// Kinematic error of the last added sample less that of the last fit [rad].
+  /// Kinematic error of the last added sample minus the kinematic error by the last fit [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// Signals of a sample, by LineSignal, less those of the last fit. The lines in `without` stay in the signals.
+  /// Signals of a sample, by LineSignal, minus their values by the last fit without the lines in `without`.
   Eigen::Vector3d beside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;
@@ -220,7 +221,7 @@ private:
   static constexpr double LEAST_LOAD = 0.05;    // least spread of the load, as a share of the rated torque [-]
   static constexpr double ONE_WAY = 0.9;        // least mean direction of a motion in one direction [-]
 
-  // Columns: nuisances, lines in proportion to the load, the others by their orders.
+  // Columns of the regression: regressors that are no lines, lines in proportion to the load, other lines by order.
   static constexpr int DIRECTION = 1;
   static constexpr int LOAD = 5;
   static constexpr int NUISANCES = 8;
@@ -250,7 +251,7 @@ private:
     return places;
   }
 
-  /// By LineSignal.
+  /// Values of the sample's signals, by LineSignal.
   static Eigen::Vector3d targetsOf(const LineSample& sample) noexcept
   {
     return { sample.kinematic_error, sample.motor_torque, sample.ripple };
@@ -270,13 +271,13 @@ private:
     }
   }
 
-  /// Column of the line with the order of the loaded column `i`.
+  /// Column of the plain line that has the order of column `i` of the lines in proportion to the load.
   int baseOf(int i) const noexcept
   {
     return FIRST_LINE + 2 * static_cast<int>(places_[FIRST_LOADED + static_cast<std::size_t>(i) / 2]) + i % 2;
   }
 
-  /// Takes the means off the load, and drops the lines that the window cannot determine.
+  /// Subtracts the means from the load's columns, and drops the lines that the window does not determine.
   void prepareLoaded(int used) noexcept
   {
     const double weighted_load = regression_.mean(LOAD, 0) / rated_torque_;
@@ -307,8 +308,8 @@ private:
   double mean_load_{};          // mean load of the window before, over the rated torque [-]
   double mean_lagging_load_{};  // mean of load times direction in the window before, over the rated torque [-]
   std::array<bool, LOADED_COUNT> loaded_{};  // lines in proportion to the load that the last fit has
-  PlainOrders orders_;  // the highest stand last, so that what the samples cannot show is the tail of the columns
-  Places places_;       // of the lines among them
+  PlainOrders orders_;  // ascending, so that lines too fast for the samples are the last columns
+  Places places_;       // index of each line's order in orders_
   AngleMultiples<FIRST_LOADED> rotations_;
   Row row_;
   Eigen::Vector3d targets_;
@@ -316,27 +317,25 @@ private:
   int used_{};  // number of columns of the last fit
 };
 
-/// Slip of the wave generator's bearing over one window, by the lines of races and balls in the motor's ripple.
+/// Estimates the slip of the wave generator's bearing over a window from the lines of races and balls in the ripple of
+/// the motor.
 ///
 /// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
-/// where  k       over lines;  w  weight
-///        r       ripple less all that the window's fit makes of it but for these lines [rad]
-///        theta   motor angle [rad];  o_k(s)  orders with slip s (trackedOrders)
-///        n_k     of the noise about the line: median of |F_k|^2 over slips that no bearing has as well, over ln 2
-/// s is 0 too where L of the kinematic error is larger by CLEARLY without slip.
-/// Without a line that slips L is the sum of squares of noise, whose largest value over s passes L(0) by CLEARLY in
-/// less than one window in 1000: s is then 0.
+/// where  k       goes over the bearing's lines, the second sum over the samples;  w  weight of a sample
+///        r       ripple minus its value by the fit of the window without the bearing's lines [rad]
+///        theta   motor angle [rad];  o_k(s)  order of line k with slip s (trackedOrders)
+///        n_k     noise near line k: median of |F_k|^2 over slips from -MOST to 2 MOST, divided by ln 2
+/// The slip is 0 unless L(s*) of the ripple exceeds L(0) by CLEARLY. Noise alone exceeds this limit in less than one
+/// window in 1000. The slip is also 0 if L of the kinematic error at slip 0 exceeds its value at s* by CLEARLY.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
 ///
-/// At an even speed it looks for no slip: sampling then folds the lines of the teeth to sharp lines at any order, which
-/// are two orders apart as those of a race are.
-///
-/// The class keeps every sample of a window: it is for recordings and data sets, not for a loop. It looks for no slip
-/// in a window of more than a million samples, or of angles more than 500 turns apart.
+/// The class searches for no slip at an even speed, because sampling then folds the lines of the teeth to sharp lines,
+/// two orders apart like the lines of a race. It keeps every sample of a window, so it is for recordings and data sets,
+/// not for a loop. It searches for no slip in windows of more than a million samples or with angles over 500 turns.
 class BearingSlip
 {
 public:
-  static constexpr double MOST = 0.03;  ///< [-]
+  static constexpr double MOST = 0.03;  ///< largest slip that the class searches for [-]
 
   explicit BearingSlip(const Parameters& parameters);
 
@@ -349,9 +348,9 @@ public:
     }
   }
 
-  /// Slip of the window [-]; 0: no slip stands out. `fitted`: the lines without slip, fitted to the samples.
+  /// Slip of the window [-]; 0: no slip found. `fitted`: fit of the lines without slip to the samples.
   double find(const OrderTracker& fitted) const;
-  /// All lines fitted to the samples at the orders of a bearing with that slip, `angle_step` as OrderTracker::fit.
+  /// Fit of all lines to the samples, at the orders of a bearing with this slip. `angle_step`: see OrderTracker::fit.
   OrderTracker refit(double slip, double angle_step) const;
 
 private:

@@ -14,16 +14,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double CARRIED_WINDOWS = 10.0;  // windows in the means that CarriedError is fitted to
-constexpr double LEAST_INVERSE = 1e-6;    // 1 / degrees of freedom: beyond a million it is the normal distribution
+constexpr double CARRIED_WINDOWS = 10.0;  // number of windows in the means that CarriedError was fitted to
+constexpr double LEAST_INVERSE = 1e-6;    // least 1 / degrees of freedom; the distribution is then practically normal
 constexpr int MIN_COMMON = 4;             // number of indicators that a common persistence needs
 
-// Repeatability of the friction over Repeatability::share.
+// Repeatability of the friction, divided by Repeatability::share.
 constexpr double FRICTION_SHARE = 3.0;    // part in proportion to the friction [-]
 constexpr double FRICTION_TORQUE = 22.0;  // constant part at the joint [N.m]
 
-/// Size of the difference between drive and model. For a line it is the root of the sum of squares over the lines of
-/// its signal whose phase stays, because resonances make each of them large in one motion and small in another.
+/// Magnitude of the difference between drive and model. For a line it is the root of the sum of squares over the
+/// phase-locked lines of its signal, because resonances make single lines large in one motion and small in another.
 double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
 {
   if (indicator < SCALAR_COUNT)
@@ -39,7 +39,7 @@ double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
   return std::sqrt(square);
 }
 
-/// Standard error of the share that stays (von Neumann 1941).
+/// Standard error of the share of the variance that persists from window to window (von Neumann 1941).
 double errorOfStay(const ReferenceBin& bin, const Reference& reference) noexcept
 {
   return 1.0 / std::sqrt(std::max(reference.count - bin.runs, 1));
@@ -71,7 +71,7 @@ Repeatability repeatabilityOf(const Parameters& parameters)
 
 double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept
 {
-  const double own = bin.references[amplitudeOf(indicator)].scale;  // of a part of a line: it may be near zero itself
+  const double own = bin.references[amplitudeOf(indicator)].scale;  // amplitude, because a line's part may be near zero
   const auto friction = [&](double torque)
   { return std::hypot(repeatability.friction_share * torque, repeatability.friction_torque); };
   switch (static_cast<ScalarIndicator>(indicator))
@@ -133,7 +133,7 @@ Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference, c
     stays = common.mean + own * (stays - common.mean);
     error = std::sqrt(own * error * error + (1.0 - own) * (1.0 - own) * all / common.count);
   }
-  // The share that stays may be larger or smaller than found, by its error.
+  // The share that persists may be larger or smaller than the estimate, by its error.
   const double least = std::clamp(stays - error, 0.0, 1.0);
   const double runs = static_cast<double>(bin.runs) / bin.windows;
   return { std::clamp(stays + error, 0.0, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
@@ -143,7 +143,7 @@ double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::
                        double windows) noexcept
 {
   const double off = error.share * sizeOffModel(bin, indicator);
-  // With fewer windows than CARRIED_WINDOWS the variance grows as if all of it were noise.
+  // With fewer windows than CARRIED_WINDOWS the variance grows in inverse proportion to their number, as that of noise.
   return (error.deviation * error.deviation + off * off) * std::max(CARRIED_WINDOWS / windows, 1.0);
 }
 
@@ -170,21 +170,21 @@ Uncertainty uncertaintyOf(double learned, double tail, double weight, double fre
 
 namespace
 {
-constexpr double LEAST_OTHERS = 0.05;  // least share of a window's weight that the other windows determine
+constexpr double LEAST_OTHERS = 0.05;  // lower bound of 1 - leverage of a window in its own fit [-]
 constexpr double TAIL_STEP = 0.01;     // step of 1 / degrees of freedom
-// Least gain of the log likelihood over that of the normal distribution. In 95 % of all cases chance gives less: half
-// the quantile of chi square with one degree of freedom.
+// Least gain of the log likelihood over that of the normal distribution: half the 95 % quantile of chi square with one
+// degree of freedom. Chance gives more in 5 % of all cases.
 constexpr double LEAST_GAIN = 1.92;
 
-/// Whether an indicator shows the tail. Moments of a residual and amplitudes of lines whose phase is free do not show
-/// the tail, because they are not normally distributed and have spreads and a law of their own.
+/// Whether the windows of an indicator show the tail. Kurtosis and crest of the residual and amplitudes of lines with a
+/// free phase do not show it, because they are not normally distributed even in windows without a tail.
 bool tellsTail(std::size_t indicator) noexcept
 {
   return indicator != indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) &&
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// Histogram over logarithmic classes: deviation of each window from all others, in units of their spread.
+/// Histogram, over logarithmic classes, of the deviation of each window from all other windows, in their spread.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;
@@ -199,7 +199,7 @@ struct Residuals
     count += 1.0;
   }
 
-  /// Logarithm of the likelihood if single windows have this tail.
+  /// Logarithm of the likelihood of the deviations if single windows have the tail `tail`.
   double likelihood(double tail) const noexcept
   {
     const double inverse = tail + (1.0 + 3.0 * excessOf(tail)) * count / freedom;
@@ -219,9 +219,9 @@ struct Residuals
   double count{};
 };
 
-/// Sets ReferenceBin::tail once the slopes are fitted. It is the tail that makes the deviations of KeptWindows, each
-/// from all others, most likely in the distribution that scores single windows (Baseline). Normal windows give 0 to
-/// 0.01.
+/// Sets ReferenceBin::tail after the fit of the slopes, by maximum likelihood. The data are the deviations of each of
+/// the KeptWindows from all others, with the distribution of single windows' scores (Baseline). Normal windows give 0
+/// to 0.01.
 void fitTails(ReferenceBin& bin, const LearnedSums& sums) noexcept
 {
   const Eigen::SelfAdjointEigenSolver<Squares> axes(mapped(bin.information));
@@ -271,12 +271,12 @@ constexpr int MIN_FITTED = 4;  // number of windows that slopes need
 constexpr int RIDGE_STEPS = 4;
 constexpr double LEAST_FREEDOM = 1.0;  // least degrees of freedom of a spread
 constexpr int MIN_STEPS = 8;           // number of pairs of windows that their mean difference needs
-// Error of a place, rms: 0.025 K and a quarter of a percent of the class of load. Nearer places count as one [-].
+// Rms error of a covariate [-]: 0.025 K, or 0.25 % of the width of a class of load. Closer values count as equal.
 constexpr double PLACE_ERROR = 0.005;
 constexpr int MIN_ALIKE = 4;    // number of lines that a common variance needs
 constexpr int ITERATIONS = 30;  // power iterations for a principal component
 
-/// Adds the products of an indicator's difference and the place.
+/// Adds the products of an indicator's difference `indicator` and the covariates' difference `place` to the sums.
 void add(double indicator, const PlaceVector& place, double weight, IndicatorSums& sums) noexcept
 {
   ++sums.count;
@@ -285,7 +285,7 @@ void add(double indicator, const PlaceVector& place, double weight, IndicatorSum
   mapped(sums.places).noalias() += weight * place * place.transpose();
 }
 
-/// Part of the indicator's square that slopes over the place do not explain.
+/// Sum of squares of the indicator that the regression with these slopes does not explain.
 double squareLeft(const IndicatorSums& sums, const PlaceVector& slopes) noexcept
 {
   return sums.square + slopes.dot(mapped(sums.places) * slopes - 2.0 * mapped(sums.mixed));
@@ -296,7 +296,7 @@ constexpr int SHARED = PLACES - OWN_PLACES;
 using SharedSquares = Eigen::Matrix<double, SHARED, SHARED>;
 using SharedVector = Eigen::Matrix<double, SHARED, 1>;
 
-/// The shared coordinates of the place, less their regression on the class's own coordinates.
+/// Covariates whose slopes all classes share, minus their regression on the covariates with a slope for each class.
 struct SharedPlaces
 {
   SharedPlaces(const PlaceSquares& places, int windows) noexcept
@@ -313,7 +313,7 @@ struct SharedPlaces
     return mapped(with).tail<SHARED>() - by_own.transpose() * mapped(with).head<OWN>();
   }
 
-  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of the shared coordinates over the own ones
+  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of this regression
   SharedSquares squares;
 };
 
@@ -325,7 +325,7 @@ bool serves(const ReferenceBin& other, const ReferenceBin& bin) noexcept
   return there == bin.bin && other.bin.temperature != bin.bin.temperature;
 }
 
-/// Information of the slopes in this class by the windows of all classes.
+/// Sets ReferenceBin::information, the information on the slopes in this class, from the windows of all classes.
 void fitInformation(ReferenceBin& bin, const LearnedSums& sums, const std::vector<ReferenceBin>& bins,
                     const std::vector<LearnedSums>& all_sums) noexcept
 {
@@ -366,7 +366,7 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
     }
     const double repeats = repeatsWithin(repeatability, bin, indicator);
     reference.variance = sums.square / (sums.count - 1.0);
-    for (int i = 0; i < RIDGE_STEPS; ++i)  // with the slopes the spread shrinks, and with the spread the ridge
+    for (int i = 0; i < RIDGE_STEPS; ++i)  // iterates, because the ridge depends on the spread that the slopes leave
     {
       reference.ridge = std::max((reference.variance + repeats * repeats) / (usual * usual), PLACE_ERROR * PLACE_ERROR);
       Squares ridged = information;
@@ -392,8 +392,8 @@ void fitSlopes(ReferenceBin& bin, const LearnedSums& learned, const std::vector<
 
 constexpr std::size_t KINDS_OF_LINE = 2 * LINE_SIGNALS + 1;
 
-/// Kind of lines that are alike: of one signal the amplitudes with a free phase, or the parts of lines whose phase
-/// stays, or all lines in proportion to the load. KINDS_OF_LINE: no line is like this indicator.
+/// Kind of similar lines: amplitudes of one signal with a free phase, parts of phase-locked lines of one signal, or
+/// parts of lines in proportion to the load. KINDS_OF_LINE: the indicator has no similar line.
 std::size_t kindOfLine(std::size_t indicator) noexcept
 {
   if (indicator < SCALAR_COUNT || (indicator >= LOADED_BLOCK && indicator < LOADED_BLOCK + LOADED_COUNT))
@@ -417,7 +417,7 @@ void fitCommonCauses(ReferenceBin& bin, const ReferenceSums& sums, FitRoom& room
   using Mixed = Eigen::Matrix<double, PLACES, INDICATOR_COUNT>;
   Mixed slopes = Mixed::Zero();
   Mixed mixed = Mixed::Zero();
-  Vector scale = Vector::Zero();  // scale of each indicator; 0: left out
+  Vector scale = Vector::Zero();  // factor that gives each indicator a sum of squares of 1; 0: not used
   int used = 0;
   double slopes_freedom = 0.0;
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
@@ -514,7 +514,7 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
   std::array<double, INDICATOR_COUNT> relative{};
   for (std::size_t i = SCALAR_COUNT; i < INDICATOR_COUNT; ++i)
   {
-    const double error = indicators.uncertainty[i];  // also NaN in a file of another program
+    const double error = indicators.uncertainty[i];  // can be NaN in a file of another program
     relative[i] = error > 0.0 ? error / least[static_cast<std::size_t>(signalOf(i))] : 0.0;
   }
   return relative;
@@ -534,7 +534,7 @@ void learnWindow(ReferenceBin& bin, LearnedSums& learned, const SignalIndicators
   mapped(sums.places).noalias() += weight * place * place.transpose();
   const PlaceVector moved = mapped(here) - mapped(steps.last_place);
   const std::array<double, INDICATOR_COUNT> errors = relativeErrors(indicators);
-  std::array<double, INDICATOR_COUNT> before{};  // differences from the means so far
+  std::array<double, INDICATOR_COUNT> before{};  // differences from the means of the earlier windows
   for (std::size_t i = 0; i < INDICATOR_COUNT; ++i)
   {
     if (!std::isfinite(indicators.values[i]))

@@ -13,12 +13,12 @@ namespace hjt
 {
 namespace
 {
-// Of a column's mean square [-]: what stands out of the others by less than a thousandth has no coefficient of its own,
-// such as the ripple of a steady speed beside the constant.
+// Ridge as a share of a column's mean square [-]. A column that differs from the others by less than a thousandth gets
+// no separate coefficient, for example the column of a nearly constant speed next to the column of ones.
 constexpr double RIDGE = 1e-6;
 
-/// Adds weight row row' to a matrix of that order, by columns: its lower triangle, and above it what fills whole
-/// vectors.
+/// Adds weight row row' to a square matrix that is stored by columns. The sums are valid in the lower triangle only; a
+/// loop over whole vectors also writes a few elements above the triangle.
 HJT_VECTOR_CLONES void addSquare(const double* __restrict__ row, int order, double weight,
                                  double* __restrict__ square) noexcept
 {
@@ -118,7 +118,7 @@ bool RunningRegression::fit(int used) noexcept
   {
     return false;
   }
-  // Column j times s_j has mean square 1; a column of zeros stays one, and the ridge gives it the coefficient 0.
+  // Column j times s_j has mean square 1. A column of zeros stays zero, and the ridge makes its coefficient 0.
   for (int i = 0; i < used; ++i)
   {
     scale_[i] = normal_(i, i) > 0.0 ? std::sqrt(rows_ / normal_(i, i)) : 1.0;
@@ -138,7 +138,7 @@ bool RunningRegression::fit(int used) noexcept
     return false;
   }
   fitted_rows_ = rows_;
-  // The inverse of the factor, column by column: its squares sum to the diagonal of the inverse.
+  // Inverse of the factor, column by column. The sums of its squares are the diagonal of the matrix's inverse.
   inverse_diagonal_.setZero();
   for (int j = 0; j < used; ++j)
   {

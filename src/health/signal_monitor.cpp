@@ -12,18 +12,18 @@ namespace hjt
 {
 namespace
 {
-constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel over which the mean speed forgets [rad]
-constexpr double MEAN_TIME = 0.5;                // time over which the mean speed forgets while the joint stands [s]
-constexpr double LARGEST_RIPPLE = 12e-3;         // ripple of the speed as read in a calm motion [rad]
+constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel after which a speed has weight 1/e in the mean speed [rad]
+constexpr double MEAN_TIME = 0.5;                // time after which a speed has weight 1/e in the mean speed [s]
+constexpr double LARGEST_RIPPLE = 12e-3;         // largest ripple of the measured speed in a calm motion [rad]
 constexpr double SETTLING_TIME = 0.1;            // time after a motion that was not calm [s]
 constexpr std::int64_t WAITING_TIME = 20000000;  // time before a motion that is not calm [ns]
-// After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is some six times as
-// large as the ringing, and ten times or more as large as the ripple of lines.
+// After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is about six times as
+// large as the ringing, and at least ten times as large as the ripple by lines.
 constexpr double RINGING_SHARE = 0.15;   // ringing over the ripple [-]
 constexpr double RINGING_TIME = 0.45;    // time in which the ringing decays by a factor of e [s]
 constexpr double CALM_RINGING = 0.3e-3;  // ringing as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;    // weight of a sample with 1.5 mrad of ringing; its residual still counts [-]
-constexpr double RESIDUAL_TRAVEL = TWO_PI;  // travel over which the residual's own mean forgets [rad]
+constexpr double LEAST_WEIGHT = 0.04;    // least weight of a sample whose residual counts: 1.5 mrad of ringing [-]
+constexpr double RESIDUAL_TRAVEL = TWO_PI;  // travel after which a residual has weight 1/e in the mean residual [rad]
 constexpr int MIN_RESIDUALS = 100;          // number of residuals for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate, in windows
 }  // namespace
@@ -88,9 +88,9 @@ double SignalMonitor::weightAt(double output_angle) const noexcept
   return output_.gravity_torque != 0.0 ? output_.gravity_torque * std::sin(output_angle - output_.gravity_angle) : 0.0;
 }
 
-/// Adds a sample to the torsion loop. The torque is known at one end of the gear, at the load or at the motor, and
-/// there is inertia between that end and the gear. Without a load estimate the weight takes its place, because the
-/// motor's torque includes the friction.
+/// Adds a sample to the torsion loop. The torque is that of the load or, without an estimate of the load, of the
+/// weight, because the motor's torque includes friction. Without a weight it is the torque of the motor. Inertia lies
+/// between the place of the torque and the gear.
 void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                             double seconds) noexcept
 {
@@ -107,8 +107,8 @@ void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, doub
 bool SignalMonitor::update(const SignalSample& given) noexcept
 {
   SignalSample sample = given;
-  sample.load_torque += weightAt(sample.output_angle);  // no sample's load has it
-  // One encoder is enough for the angle of the motor.
+  sample.load_torque += weightAt(sample.output_angle);  // SignalSample::load_torque is without the weight
+  // Without a motor encoder the output encoder gives the angle of the motor.
   const bool motor_known = std::isfinite(sample.motor_angle);
   const double motor_angle = motor_known ? sample.motor_angle : ratio_ * sample.output_angle;
   if (!std::isfinite(motor_angle) || !std::isfinite(sample.motor_torque) || !isStamp(sample.stamp) ||
@@ -168,7 +168,7 @@ bool SignalMonitor::update(const SignalSample& given) noexcept
   return true;
 }
 
-/// Adds the parts of a sample that count in any motion: torque balance, lag, load and temperature.
+/// Adds a sample to the estimates that use every motion: torque balance, lag, load and temperature.
 void SignalMonitor::addAny(const SignalSample& sample, double velocity, double motor_angle, double output_angle,
                            double seconds) noexcept
 {
@@ -189,7 +189,7 @@ void SignalMonitor::addAny(const SignalSample& sample, double velocity, double m
   }
 }
 
-/// Updates for how long the motion has been calm. Returns whether the speed is even.
+/// Updates the time for which the motion has been calm. Returns whether the speed is even.
 bool SignalMonitor::judgeMotion(double velocity, double seconds, bool motor_known) noexcept
 {
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
@@ -222,7 +222,8 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
 }
 
-/// Adds the samples that have waited long enough to the lines, and the oldest sample if too many wait.
+/// Lets a sample wait. Adds the samples that waited for WAITING_TIME, or the oldest one if no place is left, to the fit
+/// of the lines.
 void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept
 {
   while (waiting_count_ > 0 &&

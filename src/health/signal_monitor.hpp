@@ -25,29 +25,28 @@ namespace hjt
 {
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
-/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Without one of the
-/// encoders the indicators that need both are missing, without a load estimate the efficiency, without set points the
-/// lag.
+/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Indicators that need a
+/// missing signal are not determined: a second encoder, a load estimate (efficiency) or set points (lag).
 struct SignalSample
 {
   std::int64_t stamp{};                   ///< [ns]
-  double motor_angle{ NOT_MEASURED };     ///< encoder, without jumps at full turns [rad]
-  double output_angle{ NOT_MEASURED };    ///< encoder, without jumps at full turns [rad]
+  double motor_angle{ NOT_MEASURED };     ///< reading of the encoder, without jumps at full turns [rad]
+  double output_angle{ NOT_MEASURED };    ///< reading of the encoder, without jumps at full turns [rad]
   double motor_velocity{ NOT_MEASURED };  ///< [rad/s]
   double motor_torque{
     NOT_MEASURED
-  };  ///< torque at the shaft: the commanded torque, or current times torque constant [N.m]
-  double load_torque{ NOT_MEASURED };   ///< estimate at the output, > 0 resists positive motion [N.m]
+  };  ///< torque at the motor shaft: the commanded torque, or current times torque constant [N.m]
+  double load_torque{ NOT_MEASURED };   ///< estimate at the joint, without weight; > 0 resists positive motion [N.m]
   double temperature{ NOT_MEASURED };   ///< [degC]
   double target_angle{ NOT_MEASURED };  ///< set point of the output angle [rad]
 };
 
-/// Ripple of an angle: the part of it that passes three high-pass filters in a row.
+/// Ripple of an angle: the part of the angle that passes three high-pass filters in series.
 ///
 /// Law:   r = (s t / (1 + s t))^3 x
-/// where  x  angle, given by its speed [rad];  t  TIME [s]
-/// A steady acceleration has no ripple. A line at the frequency f keeps the share (1 + 1 / (2 pi f t)^2)^-1.5, which is
-/// 0.9 at 30 Hz.
+/// where  x  angle, given by its speed [rad];  r  ripple [rad];  t  TIME [s];  s  Laplace variable
+/// A steady acceleration causes no ripple. The ripple contains a share of (1 + 1 / (2 pi f t)^2)^-1.5 of the amplitude
+/// of a line at frequency f, for example 0.9 at 30 Hz.
 class RippleFilter
 {
 public:
@@ -72,18 +71,19 @@ private:
   double smooth_acceleration_{};  // [rad/s^2]
 };
 
-/// Inertia and friction that grows with the load, from the motor's torque over one window.
+/// Estimates inertia and friction by load from the motor torque over one window.
 ///
-/// Law:   F tau = J F a + C F sign(omega) + g_0 [ + g_c F cos(phi) + g_s F sin(phi) ],  F as of TwiceSmoothed
-///        F tau = J F a + C F sign(omega) + g_0 + B F omega + l F(sign(omega) |T| / i)   where the motor moves
-/// where  tau            motor torque less the load's [N.m];  a, omega  motor acceleration [rad/s^2], speed [rad/s]
-///        C              friction: it changes sign with the motion, so that without its column a change by temperature
-///                       or a fault would count as inertia
-///        phi            output angle [rad]; g_c, g_s: weight, where the load is not known
-///        B              viscous friction;  T, i  load torque [N.m], ratio;  l  friction by load [-]: needs a load
-///                       that varies
-/// The inertia goes to 0 where the motion does not show it: with less than LEAST_ACCELERATION rms, or if the weight is
-/// in proportion to the acceleration.
+/// Law:   F tau = J F a + C F sign(omega) + g_0 [ + g_c F cos(phi) + g_s F sin(phi) ]
+///        F tau = J F a + C F sign(omega) + g_0 + B F omega + l F(sign(omega) |T| / i),  while the motor moves
+/// where  F          filter of TwiceSmoothed;  tau  motor torque minus the load torque at the motor [N.m]
+///        a, omega   motor acceleration [rad/s^2], speed [rad/s];  J  inertia at the motor [kg.m^2];  g_0  offset [N.m]
+///        C          Coulomb friction [N.m]; without C a change of friction would count as inertia, because both
+///                   torques change sign with the motion
+///        phi        output angle [rad];  g_c, g_s  weight [N.m], only if the load is not known
+///        B          viscous friction [N.m.s/rad];  T, i  load torque [N.m], ratio
+///        l          friction by load [-]; it needs a load that varies
+/// The estimate of J goes to 0 if the rms acceleration is below LEAST_ACCELERATION, or if the weight is in proportion
+/// to the acceleration.
 class TorqueBalance
 {
 public:
@@ -95,15 +95,15 @@ public:
     smoothed_.reset();
   }
 
-  /// The next window.
+  /// Begins the next window.
   void restart() noexcept
   {
     regression_.reset();
     friction_.reset();
   }
 
-  /// Takes every sample. `torque`: of the motor, less the load's [N.m]; `load`: at the motor, NaN: not known [N.m];
-  /// `seconds`: since the last sample.
+  /// Adds a sample. `torque`: motor torque minus load torque at the motor [N.m]; `load`: load torque at the motor, NaN
+  /// if not known [N.m]; `seconds`: since the last sample.
   void add(double torque, double load, double velocity, double output_angle, double seconds, bool moving) noexcept
   {
     const double direction = std::copysign(1.0, velocity);
@@ -142,19 +142,19 @@ public:
 
 private:
   static constexpr int COLUMNS = 5;
-  static constexpr double MAX_INFLATION = 30.0;       // of the variance of the friction by load [-]
-  static constexpr double LEAST_ACCELERATION = 20.0;  // rms, of the motor [rad/s^2]
+  static constexpr double MAX_INFLATION = 30.0;       // largest inflation of the variance of l [-]
+  static constexpr double LEAST_ACCELERATION = 20.0;  // least rms acceleration of the motor [rad/s^2]
 
   RunningRegression regression_;
   RunningRegression friction_;
   TwiceSmoothed<COLUMNS + 1> smoothed_;
 };
 
-/// Load torque of a joint as a function of its angle, which is the same for one payload on any path.
+/// Load torque of a joint as a function of its angle. The function depends on the payload and not on the path.
 ///
 /// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
-/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight;  c  the part that does not depend on the angle
-/// If the angle varies by less than some 0.3 deg rms, it determines c alone, and s and k go to 0.
+/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight [N.m];  c  constant part of the load [N.m]
+/// If the angle varies by less than about 0.3 deg rms, the fit determines only c, and s and k go to 0.
 class LoadOverAngle
 {
 public:
@@ -167,10 +167,10 @@ public:
     right_.noalias() += seconds * torque * row;
   }
 
-  /// NaN: nothing was added.
+  /// Result of the fit; NaN if no sample was added.
   Coefficients coefficients() const noexcept
   {
-    constexpr double LEAST_SQUARE = 2.5e-5;  // of the sine and cosine about their means [-]
+    constexpr double LEAST_SQUARE = 2.5e-5;  // least mean square of sine and cosine about their means [-]
     const double time = normal_(0, 0);
     const Eigen::Vector2d mean = normal_.col(0).tail<2>() / time;
     const double mean_torque = right_[0] / time;
@@ -189,10 +189,9 @@ private:
 ///
 /// Law:   r = RippleFilter of i (phi - phi_s),   R^2 = <r^2>,   A_o^2 = 4 <|c_o|^2>,   c_o = mean of r exp(j o theta)
 /// where  phi, phi_s  output angle, its set point [rad];  i  ratio;  theta  motor angle [rad];  o  order
-///        <>          mean over the travel;  c_o is forgotten over LINE_TRAVEL, so that a line counts although its
-/// phase
-///                    changes, as under a load that changes sign and from one move to the next
-/// Set points are smooth, so that r contains nothing of the motion itself. The ripple of the angle alone would.
+///        R, A_o      rms ripple, amplitude of the line of order o, both of the lag [rad];  <>  mean over the travel
+/// c_o is an exponential mean over LINE_TRAVEL. A_o therefore contains a line whose phase changes, for example with the
+/// sign of the load. The ripple of the angle alone would contain the motion, but set points are smooth and r does not.
 class LagEstimate
 {
 public:
@@ -201,7 +200,7 @@ public:
 
   void reset() noexcept { *this = LagEstimate(); }
 
-  /// The next window.
+  /// Begins the next window.
   void restart() noexcept
   {
     travel_ = 0.0;
@@ -209,8 +208,8 @@ public:
     lines_ = {};
   }
 
-  /// Takes every sample. `lag`: at the motor [rad], NaN: there is no set point; `travel`: of the motor since the last
-  /// sample [rad]; `seconds`: since the last sample; `moving`: whether the sample counts.
+  /// Adds a sample. `lag`: i (phi - phi_s), NaN without a set point [rad]; `travel`: of the motor since the last sample
+  /// [rad]; `seconds`: since the last sample; `moving`: whether the motor moves, so that the sample counts.
   void add(double lag, double motor_angle, double travel, double seconds, bool moving) noexcept
   {
     const bool is_first = age_ == 0.0;
@@ -246,12 +245,12 @@ public:
     }
   }
 
-  Indicator ripple() const noexcept  ///< R [rad]
+  Indicator ripple() const noexcept  ///< rms ripple R of the lag [rad]
   {
     return { travel_ > LEAST_TRAVEL, std::sqrt(square_ / travel_) };
   }
 
-  /// A_o of ORDERS[order] [rad]
+  /// Amplitude A_o of the line ORDERS[order] of the lag [rad].
   Indicator line(std::size_t order) const noexcept
   {
     const Line& line = lines_[order];
@@ -259,11 +258,11 @@ public:
   }
 
 private:
-  static constexpr double LINE_TRAVEL = 2.0 * TWO_PI;    // [rad]
-  static constexpr double LEAST_TRAVEL = 10.0 * TWO_PI;  // in a window [rad]
-  static constexpr double SETTLING_TIME = 0.2;           // of the filter [s]
-  static constexpr double USED_BAND = 0.8;               // of half the samples a turn [-]
-  static constexpr double SEEN_SHARE = 0.5;              // least share of the travel in which a line could be seen [-]
+  static constexpr double LINE_TRAVEL = 2.0 * TWO_PI;    // travel after which r has weight 1/e in c_o [rad]
+  static constexpr double LEAST_TRAVEL = 10.0 * TWO_PI;  // least travel in a window [rad]
+  static constexpr double SETTLING_TIME = 0.2;           // settling time of the filter [s]
+  static constexpr double USED_BAND = 0.8;               // highest order, as a share of half the samples per turn [-]
+  static constexpr double SEEN_SHARE = 0.5;              // least share of the travel with enough samples for a line [-]
 
   struct Line
   {
@@ -284,13 +283,14 @@ private:
 ///
 /// Law:   tau - T / i = C sign(omega) + B omega + g_c cos(phi) + g_s sin(phi) + g_0
 /// where  tau, T      motor torque, load estimate (0 if none) [N.m];  i  ratio [-]
-///        omega, phi  motor speed over about a turn [rad/s], output angle [rad]; the terms in phi are the weight
-/// Recursive least squares over samples at near-constant speed, which are forgotten exponentially over the travel.
-/// The values are valid while the motion separates them: with several speeds in each direction.
+///        omega, phi  mean motor speed over about half a turn [rad/s], output angle [rad]
+///        C, B        Coulomb friction [N.m], viscous friction [N.m.s/rad];  g_c, g_s, g_0  weight, offset [N.m]
+/// The fit is by recursive least squares over samples at nearly constant speed. Weights decay exponentially over the
+/// travel. The values are valid if the motion separates C and B, that is, has several speeds in each direction.
 class FrictionEstimate
 {
 public:
-  /// `memory`: travel of the motor after which a sample counts 1/e [rad].
+  /// `memory`: travel of the motor after which a sample has the weight 1/e [rad].
   explicit FrictionEstimate(double memory) : memory_(memory), regression_(COLUMNS, 1) {}
 
   void reset() noexcept
@@ -299,7 +299,7 @@ public:
     fitted_ = false;
   }
 
-  /// `travel`: of the motor since the last sample [rad].
+  /// Adds a sample. `travel`: of the motor since the last sample [rad]; `torque`: tau - T / i [N.m].
   void add(double travel, double velocity, double output_angle, double torque) noexcept
   {
     regression_.forget(std::exp(-std::abs(travel) / memory_));
@@ -333,34 +333,34 @@ private:
   RunningRegression regression_;
 };
 
-/// Health indicators from a drive's own signals, window by window, in fixed memory. Allocates only at construction.
+/// Computes health indicators from a drive's own signals, window by window. Only the constructor allocates.
 ///
 /// A window ends after indicators.window_turns turns of the motor at steady speed, in either direction, or after
 /// indicators.window_time. The joint torque is the load estimate plus the weight by output.gravity_torque. The motion
-/// is steady if the mean speed over about half a turn is above indicators.least_speed and the speed itself is within
-/// indicators.speed_change of that mean. Lines are fitted to the calm part of the steady motion. A change of speed
-/// excites the drive a thousand times more than the lines do, so that the motion is not calm from 20 ms before it to
-/// 0.4 s after it. Without a motor encoder lines are fitted to all steady motion.
+/// is steady if the mean speed over about half a turn is above indicators.least_speed and the speed differs from the
+/// mean by less than the share indicators.speed_change. Lines are fitted to calm motion. Steady motion is calm except
+/// from 20 ms before to 0.4 s after a change of speed, because a change excites the drive a thousand times more than
+/// the lines do. Without a motor encoder lines are fitted to all steady motion.
 class SignalMonitor
 {
 public:
   explicit SignalMonitor(const Parameters& parameters);
 
-  /// From now on looks for the bearing's slip in every window with a motor encoder (BearingSlip). This call allocates,
-  /// and updates allocate after it.
+  /// Estimates the bearing's slip (BearingSlip) in all later windows with a motor encoder. This call and all later
+  /// updates allocate.
   void seekBearingSlip(const Parameters& parameters) { slip_.emplace(parameters); }
 
   void reset() noexcept;
 
-  /// True: this sample completed a window. A sample whose stamp is not later, or that has no angle or torque, is
-  /// refused and counted.
+  /// Adds a sample. Returns whether the sample completed a window. The monitor refuses and counts a sample without
+  /// angle or torque, or with a stamp that is not later than the last one.
   bool update(const SignalSample& given) noexcept;
 
   /// Indicators of the last complete window.
   const SignalIndicators& indicators() const noexcept { return indicators_; }
 
   std::uint64_t refused() const noexcept { return refused_; }
-  double progress() const noexcept;  ///< complete share of the present window, 0 ... 1 [-]
+  double progress() const noexcept;  ///< complete share of the current window, 0 ... 1 [-]
 
 private:
   /// A weighted mean over a window.
@@ -379,9 +379,9 @@ private:
   struct Window
   {
     std::int64_t elapsed{};  // [ns]
-    double travel{};         // at steady speed [rad]
-    int samples{};           // at steady speed
-    double line_travel{};    // of the samples that lines are fitted to [rad]
+    double travel{};         // travel at steady speed [rad]
+    int samples{};           // number of samples at steady speed
+    double line_travel{};    // travel of the samples that lines are fitted to [rad]
     int line_samples{};
     bool motor_encoder{ true };
     bool both_encoders{ true };
@@ -393,13 +393,13 @@ private:
     Mean running_torque;
     Mean ratio;
     Mean kinematic_error;
-    double residuals{};  // number
+    double residuals{};  // number of residuals
     double residual_square{};
     double residual_fourth{};
     double residual_largest{};
   };
 
-  /// A sample for the lines that waits until it is known whether the motion stays calm.
+  /// A sample for the lines that waits until the monitor knows whether the motion stays calm.
   struct Waiting
   {
     LineSample sample;
@@ -442,11 +442,11 @@ private:
 
   bool started_{};
   SignalSample last_;
-  double last_angle_{};     // of the motor [rad]
+  double last_angle_{};     // last angle of the motor [rad]
   double torsion_zero_{};   // torsion of the first sample, so that sums stay small [rad]
-  double mean_velocity_{};  // over about half a turn [rad/s]
-  RippleFilter speed_;      // of the speed as read, which uneven stamps do not disturb
-  RippleFilter angle_;      // of the motor angle
+  double mean_velocity_{};  // mean velocity of the motor over about half a turn [rad/s]
+  RippleFilter speed_;      // for the measured speed, which uneven stamps do not disturb
+  RippleFilter angle_;      // for the motor angle
   TorqueBalance balance_;
   LagEstimate lag_;
   double calm_{};  // time for which the motion has been calm [s]
@@ -454,9 +454,9 @@ private:
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
   double ringing_{};        // amplitude after the last change of speed [rad]
-  double turn_travel_{};    // travel since the turn window was read [rad]
-  bool tracked_{};          // every line has been fitted, so that the residual is valid
-  double residual_mean_{};  // slow [rad]
+  double turn_travel_{};    // travel since turn_ was read last [rad]
+  bool tracked_{};          // whether the last fit separated all lines, so that the residual is valid
+  double residual_mean_{};  // slow mean of the residual [rad]
   Window window_;
 };
 }  // namespace hjt

@@ -28,8 +28,8 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr const char* TABLE = "\nsignatures: |\n";  // the last key, whose rows are read as plain text
-constexpr std::size_t ROW_START = 5;                // cause, motion, speed, direction, severity
+constexpr const char* TABLE = "\nsignatures: |\n";  // last key of the file; its rows are read as plain text
+constexpr std::size_t ROW_START = 5;                // number of words before the changes: cause, motion, speed, ...
 
 std::size_t lineOf(const YAML::Node& node)
 {
@@ -45,7 +45,7 @@ public:
     readHeader(text.substr(0, table));
     if (table == std::string::npos)
     {
-      fail(0, "signatures: no such table");
+      fail(0, "signatures: the file has no such table");
     }
     const std::string above = text.substr(0, table + 1);
     readTable(text.substr(table + std::string(TABLE).size()),
@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  /// Refuses the file. `line`: line of the error; 0: the file as a whole.
+  /// Throws the error of this file. `line`: line of the error; 0: the error concerns the whole file.
   [[noreturn]] void fail(std::size_t line, const std::string& what) const
   {
     throw ParameterError("indicators.signatures: " + path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " +
@@ -83,7 +83,7 @@ private:
       {
         fail(lineOf(format), "format: " + (format.IsScalar() ? format.Scalar() : "no number") + ", expected " +
                                  std::to_string(SIGNATURE_FORMAT) +
-                                 ": the file is of another version; make it again with "
+                                 ": another version wrote the file; make the file again with "
                                  "`joint_twin signatures`");
       }
       set_.gear = section(file, "gear").as<std::string>();
@@ -116,7 +116,7 @@ private:
     return number(node.IsScalar() ? node.Scalar() : "no number", range, lineOf(node), before);
   }
 
-  /// `before`: makes the beginning of the message.
+  /// Number in a word. `before`: function that returns the beginning of the error's message.
   template <class Text>
   double number(const std::string& word, const Range& range, std::size_t line, const Text& before) const
   {
@@ -136,7 +136,7 @@ private:
     }
   }
 
-  /// The value from `first` to `count` that has this name. `kind`: kind of the value, for the message.
+  /// Index, from `first` to `count` - 1, of the value with this name. `kind`: kind of value, for the message.
   template <class NameOf>
   std::size_t named(const std::string& name, const NameOf& name_of, std::size_t first, std::size_t count,
                     const std::string& kind, std::size_t line) const
@@ -168,7 +168,7 @@ private:
       const std::string key = "indicators." + entry.first.Scalar();
       if (found == known.end())
       {
-        fail(lineOf(entry.first), key + ": a part of a line; signatures have its amplitude");
+        fail(lineOf(entry.first), key + ": is the cosine or sine part of a line; signatures have only its amplitude");
       }
       if (entry.second.Scalar() != indicatorUnit(indicator))
       {
@@ -186,7 +186,7 @@ private:
       const std::size_t indicator = indicatorNamed(entry.first);
       if (indicator >= SCALAR_COUNT)
       {
-        fail(lineOf(entry.first), "sound." + entry.first.Scalar() + ": a line; only scalar indicators have one");
+        fail(lineOf(entry.first), "sound." + entry.first.Scalar() + ": is a line; 'sound' has only scalar indicators");
       }
       set_.sound[indicator] = number(entry.second, "sound." + entry.first.Scalar(), { -1e30, 1e30 });
     }
@@ -236,7 +236,7 @@ private:
     }
   }
 
-  /// Adds the numbers of robots to a signature, interpolated linearly from 0 and between the severities.
+  /// Adds the changes of `of_robots` to a signature, interpolated linearly between severities, and from 0.
   void addOfRobots(Signature& signature) const
   {
     RobotSignature before{};
@@ -307,7 +307,7 @@ private:
 
   const std::string path_;
   SignatureSet set_;
-  std::vector<std::size_t> columns_;  // numbers of a signature
+  std::vector<std::size_t> columns_;  // for each column of the table, index in the signature
 };
 
 std::string readText(const std::string& path)
@@ -316,14 +316,14 @@ std::string readText(const std::string& path)
   std::optional<std::string> text = wholeFile(path, MAX_TEXT, &reason);
   if (!text)
   {
-    throw ParameterError("indicators.signatures = '" + path + "': cannot be read: " + reason + "; name a file, or " +
-                         NO_FILE);
+    throw ParameterError("indicators.signatures = '" + path + "': cannot be read: " + reason +
+                         "; give a file of signatures or " + NO_FILE);
   }
   return std::move(*text);
 }
 
-/// Adds a signature at the geometric mean of each two severities that follow each other, interpolated linearly. Without
-/// them an estimate would stay at the severities of the runs.
+/// Adds signatures between each two successive severities, at their geometric mean, by linear interpolation. Without
+/// the added signatures, estimates of the severity would stay at the severities of the runs.
 SignatureSet withSeveritiesBetween(SignatureSet set)
 {
   const std::vector<Signature> known = std::move(set.signatures);
@@ -393,7 +393,7 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name)
 
 namespace
 {
-constexpr const char* KINEMATICS = " kinematics ";  // motion of the rows that do not come from a run
+constexpr const char* KINEMATICS = " kinematics ";  // name of the motion in rows that are calculated without runs
 constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
 # What faults change in the health indicators of a gear, found in the twin's own runs
 # (docs/indicators.md, "Signatures").
@@ -435,7 +435,7 @@ constexpr const char* SIGNATURES = R"(
 signatures: |
 )";
 
-/// A number with the shortest exponent: -2.44e-5.
+/// Text of a number with the shortest exponent, for example -2.44e-5 for -2.44e-05.
 std::string shortText(double value, int digits)
 {
   const std::string text = roundedText(value, digits);
@@ -537,7 +537,7 @@ std::string withRowsOf(const std::string& text, const std::string& path, const s
 {
   if (parseSignatures(text, path).fitted != parseSignatures(added, "those to add").fitted)
   {
-    throw ParameterError(path + ": its indicators are not those of the signatures to add");
+    throw ParameterError(path + ": its indicators differ from those of the signatures to add");
   }
   std::string all = text + (text.back() == '\n' ? "" : "\n");
   std::istringstream rows(added.substr(added.find(SIGNATURES) + std::string(SIGNATURES).size()));

@@ -11,10 +11,10 @@
 
 namespace hjt
 {
-/// Format number of the files that this software reads and writes.
+/// Number of the format of signature files that this software reads and writes.
 constexpr int SIGNATURE_FORMAT = 3;
 
-/// A number of the section `errors` of a file.
+/// A number in the section `errors` of a signature file.
 struct SignatureErrorRow
 {
   const char* key;
@@ -29,24 +29,25 @@ constexpr std::array<SignatureErrorRow, 7> SIGNATURE_ERRORS{ { { "number", &Sign
                                                                { "severity_misfit",
                                                                  &SignatureSet::severity_misfit } } };
 
-/// Index of the indicator for each number of a signature.
+/// Index of the indicator for each value of a signature.
 std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();
 
-/// The signatures of the file that parameter indicators.signatures names, by its path or beside the default
-/// configuration; NO_FILE: none. A file is read once, and all users share it. The function allocates and reads files:
-/// it is not for the real-time loop.
-/// @throws ParameterError naming file, line and key of what is wrong: damaged, of another format, with an indicator or
-/// unit that this software has not.
+/// The signatures of a file; an empty set for NO_FILE. `name`: value of indicators.signatures, an absolute path or a
+/// path in the default configuration. All users share the set of a file. The function allocates and reads files, so it
+/// is not for the real-time loop.
+/// @throws ParameterError with file, line and key if the file is damaged, has another format, or has an indicator or
+/// unit that this software does not have.
 std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 
-/// Contents of a file (format: config/signatures/size_25.yaml). `path`: for the messages alone. @throws as above.
+/// Signatures in the text of a file (format: config/signatures/size_25.yaml). `path`: only for messages.
+/// @throws ParameterError as loadSignatures.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
 
-/// The text of a file. Reading it gives the same set, except that changes have three digits. `motions`: a name for
-/// people of each signature's motion.
+/// The text of a signature file. The text has three digits of each change. `motions`: name of each signature's motion,
+/// for readers of the file.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 
-/// The text of a file with the rows of another file added. `path`: of the first file, for messages alone.
-/// @throws ParameterError if one is damaged or they speak of different indicators.
+/// The text of a signature file, with the rows of the file `added`. `path`: path of the first file, only for messages.
+/// @throws ParameterError if a file is damaged or the files have different indicators.
 std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added);
 }  // namespace hjt

@@ -14,10 +14,10 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGE = 1e100;  // logarithms of products are taken before they overflow
+constexpr double LARGE = 1e100;  // product above which the function takes its logarithm, before it can overflow
 
-/// Half the square of the amplitude that a line with a phase has in the sound drive. Orders 2 and 1.98 are so hard to
-/// separate in a motion to and fro that they count as one.
+/// Half the square of the amplitude of a phase-locked line in the sound drive. Orders 2 and 1.98 count as one line,
+/// because a motion to and fro hardly separates them.
 double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_t line) noexcept
 {
   constexpr std::array NEIGHBOURS{ index(Line::WAVE_GENERATOR_2), index(Line::CIRCULAR_SPLINE_2) };
@@ -144,7 +144,7 @@ double SignatureTerms::misfit(const SignatureParts& parts) const noexcept
   return count_ > 0 ? std::max(1.0, square / static_cast<double>(count_)) : 1.0;
 }
 
-/// Change of a number by a signature, for a number that is not that of a line.
+/// Change by a signature, in the indicator's unit; before amplitudeChange for the amplitude of a line.
 double SignatureTerms::shareOrChange(const Signature& signature, const Term& term) const noexcept
 {
   const double change = signature.change[term.number];
@@ -261,8 +261,8 @@ void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, 
 
 namespace
 {
-/// Likeness of the motions from which on a signature counts for lines. Lines depend on the motion more than on the
-/// fault.
+/// Least likeness of the motions of window and signature at which the signature's lines count. Lines depend on the
+/// motion more than on the fault.
 constexpr double ALIKE = 0.5;
 }  // namespace
 
@@ -276,12 +276,12 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   std::transform(rows.begin(), rows.end(), directions.begin(),
                  [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
 
-  /// Sums over the signatures of one cause and severity, weighted by the likeness of their motion to the
-  /// window's.
+  /// Sums over the signatures of one cause and severity, weighted by the likeness of the motions of signature and
+  /// window.
   struct Mean
   {
     double weight{};
-    double pattern{};  // score of the pattern by Student's t
+    double pattern{};  // Student's t of the pattern
     double single{};   // largest score of a single indicator
   };
   std::map<std::pair<std::size_t, double>, Mean> means;
