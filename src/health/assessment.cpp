@@ -12,8 +12,7 @@ namespace hjt
 {
 namespace
 {
-// Least number of windows in a mean, so that the mean can omit an outlier, and number of successive means that change
-// the level.
+// Least number of windows in a mean, which can then omit an outlier; number of successive means that change the level.
 constexpr int LEAST_EVIDENCE = 3;
 }  // namespace
 

@@ -223,8 +223,7 @@ private:
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
   static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
 
-  /// Adds a ridge for each part of e that grows as the other columns explain more of its column. False: too few
-  /// samples.
+  /// Adds a ridge for each part of e, larger if the other columns explain its column. False: too few samples.
   bool holdEccentricity() noexcept
   {
     if (!regression_.fit(COLUMNS))
@@ -406,7 +405,6 @@ public:
     joint_.update(kept, joint_power);
   }
 
-  /// [-]
   Indicator efficiency() const noexcept
   {
     const bool driving = motor_.mean() > 0.0;
@@ -542,7 +540,6 @@ public:
     product_ = kept * product_ + remaining * torsion_step * torque_step;
   }
 
-  /// [N.m/rad]
   Indicator stiffness() const noexcept
   {
     if (recent_torque_.span() < torque_span_ || !(torsion_square_ > 0.0))

@@ -42,8 +42,7 @@ double speedSpread(const std::vector<LineSample>& samples)
   return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
 }
 
-/// Squares of a line's Fourier sums for each slip, divided by the noise near the line. `sums`: Fourier sums over each
-/// BIN of the angle, without slip.
+/// Squares of a line's Fourier sums by slip, over the noise near the line. `sums`: those over each BIN, without slip.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
   std::vector<Complex> turned(sums.size());

@@ -251,7 +251,6 @@ private:
     return places;
   }
 
-  /// Values of the sample's signals, by LineSignal.
   static Eigen::Vector3d targetsOf(const LineSample& sample) noexcept
   {
     return { sample.kinematic_error, sample.motor_torque, sample.ripple };
@@ -308,8 +307,8 @@ private:
   double mean_load_{};          // mean load of the window before, over the rated torque [-]
   double mean_lagging_load_{};  // mean of load times direction in the window before, over the rated torque [-]
   std::array<bool, LOADED_COUNT> loaded_{};  // lines in proportion to the load that the last fit has
-  PlainOrders orders_;  // ascending, so that lines too fast for the samples are the last columns
-  Places places_;       // index of each line's order in orders_
+  PlainOrders orders_;                       // ascending, so that lines too fast for the samples are the last columns
+  Places places_;                            // index of each line's order in orders_
   AngleMultiples<FIRST_LOADED> rotations_;
   Row row_;
   Eigen::Vector3d targets_;

@@ -19,10 +19,10 @@ constexpr double SETTLING_TIME = 0.1;            // time after a motion that was
 constexpr std::int64_t WAITING_TIME = 20000000;  // time before a motion that is not calm [ns]
 // After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is about six times as
 // large as the ringing, and at least ten times as large as the ripple by lines.
-constexpr double RINGING_SHARE = 0.15;   // ringing over the ripple [-]
-constexpr double RINGING_TIME = 0.45;    // time in which the ringing decays by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;  // ringing as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;    // least weight of a sample whose residual counts: 1.5 mrad of ringing [-]
+constexpr double RINGING_SHARE = 0.15;      // ringing over the ripple [-]
+constexpr double RINGING_TIME = 0.45;       // time in which the ringing decays by a factor of e [s]
+constexpr double CALM_RINGING = 0.3e-3;     // ringing as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;       // least weight of a sample whose residual counts: 1.5 mrad of ringing [-]
 constexpr double RESIDUAL_TRAVEL = TWO_PI;  // travel after which a residual has weight 1/e in the mean residual [rad]
 constexpr int MIN_RESIDUALS = 100;          // number of residuals for moments of the fourth order
 constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate, in windows
@@ -222,8 +222,7 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
 }
 
-/// Lets a sample wait. Adds the samples that waited for WAITING_TIME, or the oldest one if no place is left, to the fit
-/// of the lines.
+/// Lets a sample wait. Adds samples that waited for WAITING_TIME, or the oldest if no place is left, to the lines' fit.
 void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept
 {
   while (waiting_count_ > 0 &&

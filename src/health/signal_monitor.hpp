@@ -82,8 +82,8 @@ private:
 ///        phi        output angle [rad];  g_c, g_s  weight [N.m], only if the load is not known
 ///        B          viscous friction [N.m.s/rad];  T, i  load torque [N.m], ratio
 ///        l          friction by load [-]; it needs a load that varies
-/// The estimate of J goes to 0 if the rms acceleration is below LEAST_ACCELERATION, or if the weight is in proportion
-/// to the acceleration.
+/// J goes to 0 if the rms acceleration is below LEAST_ACCELERATION, or if the weight is in proportion to the
+/// acceleration.
 class TorqueBalance
 {
 public:
@@ -346,8 +346,7 @@ class SignalMonitor
 public:
   explicit SignalMonitor(const Parameters& parameters);
 
-  /// Estimates the bearing's slip (BearingSlip) in all later windows with a motor encoder. This call and all later
-  /// updates allocate.
+  /// Estimates the bearing's slip in all later windows with a motor encoder. This call and all later updates allocate.
   void seekBearingSlip(const Parameters& parameters) { slip_.emplace(parameters); }
 
   void reset() noexcept;
@@ -363,7 +362,6 @@ public:
   double progress() const noexcept;  ///< complete share of the current window, 0 ... 1 [-]
 
 private:
-  /// A weighted mean over a window.
   struct Mean
   {
     void add(double value, double value_weight = 1.0) noexcept

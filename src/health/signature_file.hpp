@@ -43,8 +43,7 @@ std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
 /// @throws ParameterError as loadSignatures.
 SignatureSet parseSignatures(const std::string& text, const std::string& path);
 
-/// The text of a signature file. The text has three digits of each change. `motions`: name of each signature's motion,
-/// for readers of the file.
+/// The text of a signature file, with three digits of each change. `motions`: name of each signature's motion.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 
 /// The text of a signature file, with the rows of the file `added`. `path`: path of the first file, only for messages.

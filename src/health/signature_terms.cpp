@@ -261,8 +261,7 @@ void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, 
 
 namespace
 {
-/// Least likeness of the motions of window and signature at which the signature's lines count. Lines depend on the
-/// motion more than on the fault.
+/// Least likeness of the motions at which a signature's lines count, because they depend more on motion than on fault.
 constexpr double ALIKE = 0.5;
 }  // namespace
 
@@ -276,8 +275,7 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   std::transform(rows.begin(), rows.end(), directions.begin(),
                  [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
 
-  /// Sums over the signatures of one cause and severity, weighted by the likeness of the motions of signature and
-  /// window.
+  /// Sums over the signatures of one cause and severity, weighted by the likeness of signature's and window's motion.
   struct Mean
   {
     double weight{};

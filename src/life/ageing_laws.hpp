@@ -30,7 +30,7 @@ struct RevolutionLoad
   double tension_range{};  ///< largest minus smallest nominal tension stress of the rim [Pa]
 };
 
-/// Applies `of(x, y)` to all numbers of two loads.
+/// Applies `of(x, y)` to each pair of corresponding numbers x of `a` and y of `b`.
 template <class Of>
 RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& of)
 {
@@ -59,15 +59,15 @@ inline double archardDepth(double coefficient, double sliding, double area)
 /// maker's number of turns, halved for every `grease_halving` kelvin above `grease_temperature`.
 double greaseAgeing(const LifeParameters& parameters, double temperature);
 
-/// Factor on the ageing of grease under load: the maker's (T_av / T_N)^3 above the rated torque [-].
-/// `mean_cube`: mean cube of the torque over the rated torque.
+/// Factor on the ageing of grease by the load [-]: the gear maker's (T_av / T_N)^3, at least 1, with T_N the rated
+/// torque. `mean_cube`: mean of (torque / T_N)^3.
 inline double greaseLoadFactor(double mean_cube)
 {
   return std::max(1.0, mean_cube);
 }
 
-/// Factor of wear relative to fresh grease: 1 for fresh grease, `grease_wear_factor` when a change is due, linear in
-/// the age.
+/// Rate of wear over the rate with fresh grease [-]. It grows linearly in the age of the grease, from 1 to
+/// `grease_wear_factor` when a change is due.
 inline double greaseWearFactor(const LifeParameters& parameters, double age)
 {
   return 1.0 + (parameters.grease_wear_factor - 1.0) * age;
@@ -91,8 +91,8 @@ double stressIntensityRange(const AgeingParameters& parameters, const Revolution
 /// Growth of a crack in one turn by Paris' law with a threshold [m]. The rim bends twice in a turn.
 double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
-/// Turns at rated torque and speed that wear the wave generator's bearing as one turn under `load_torque` [N.m] does.
-/// The life is in inverse proportion to the cube of the torque.
+/// Number of turns at rated torque that wear the wave generator's bearing as much as one turn under `load_torque`
+/// [N.m]. The life of the bearing is in inverse proportion to the cube of the torque.
 double bearingWear(const LifeParameters& parameters, double load_torque);
 
 /// Life of the bearing in turns at rated torque: a Weibull distribution with the catalogue's L10 and L50.
@@ -129,8 +129,7 @@ struct DriveAge
 };
 
 /// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-].
-/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half of that factor's
-/// logarithm.
+/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is half the logarithm.
 constexpr double RATE_SCATTER = 0.25;
 
 /// Standard deviation of the logarithm of the transition's strength relative to that of the tooth space [-]. The stress
@@ -146,11 +145,11 @@ struct UnitVariation
   double bearing_life{};           ///< turns at rated torque until the bearing's first spall
   double spall_growth{};           ///< turns from the first spall to the end of use, as a share of bearing_life [-]
   double strength{ 1.0 };          ///< fatigue strength of the flexspline over the median [-]
-  double transition{ 1.0 };        ///< strength of the transition to the cup over that of the rest [-]
+  double transition{ 1.0 };        ///< strength of the transition to the cup over that of other places [-]
   std::uint32_t fillings{};        ///< seed of the differences between fillings of grease; 0: no differences
 };
 
-/// Rates of wear in the drive's n-th filling of grease, from 0 on, over the median [-].
+/// Rate of wear in a filling of grease over the drive's median rate [-]. `number`: number of the filling, from 0 on.
 inline double fillingFactor(const UnitVariation& variation, std::uint32_t number)
 {
   if (variation.fillings == 0)
@@ -162,7 +161,7 @@ inline double fillingFactor(const UnitVariation& variation, std::uint32_t number
   return boost::random::lognormal_distribution<double>(0.0, RATE_SCATTER)(random);
 }
 
-/// Fatigue strength of a drive at a place over the median [-].
+/// Fatigue strength of a drive at a place over the median of all drives [-].
 inline double strengthOf(const UnitVariation& variation, std::size_t place)
 {
   return place == static_cast<std::size_t>(StressPlace::TRANSITION) ? variation.strength * variation.transition :

@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-// A drive's age for the integrator, each entry divided by its limit.
+// Entries of a drive's age for the integrator, each divided by its limit.
 enum Entry
 {
   TURNS,
@@ -214,7 +214,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
     const bool stopping = stops(end);
     if (stopping)
     {
-      // Finds the first instant at which an event occurs; a step this short has only one.
+      // Finds the first instant at which an event occurs. A step is so short that it has at most one event.
       for (int i = 0; i < BISECTIONS; ++i)
       {
         const double middle = 0.5 * (begin + end);

@@ -12,10 +12,10 @@
 
 namespace hjt
 {
-/// The nominal drive: all factors are 1, and the bearing has the median life.
+/// The nominal drive: all factors are 1, and its bearing has the median life.
 UnitVariation nominalDrive(const LifeParameters& parameters);
 
-/// Integrates the laws of ageing over years of a duty cycle, with the loads per turn of the tooth model.
+/// Integrates the laws of ageing over years of a duty cycle. The tooth model gives the loads of one turn.
 class DriveAgeing
 {
 public:
@@ -30,7 +30,7 @@ public:
   /// Rates of Miner's sums of a new drive [1/h]; `strength`: fatigue strength over the median.
   std::array<double, STRESS_PLACES> fatigueRates(double strength) const;
 
-  /// The first limit that an age has reached.
+  /// The first limit that a drive of this age has reached; empty: none.
   std::optional<EndOfLife> ended(const UnitVariation& variation, const DriveAge& age) const;
 
   struct Life

@@ -14,8 +14,8 @@ constexpr double LOAD_STEPS = 16.0;         // steps of load up to the rated tor
 constexpr double NO_LOAD = 64.0;            // index of the node without load
 constexpr double TEMPERATURE_CLASS = 10.0;  // [K]
 
-/// The two grid nodes around a value, with the share of the upper one. A value that equals a node within rounding is
-/// that node; NaN counts as the first node.
+/// The grid nodes below and above a value, with the share of the upper node. A value that equals a node within rounding
+/// counts only for this node; NaN counts for the first node.
 struct Share
 {
   Share(double place, std::size_t nodes) noexcept

@@ -24,7 +24,7 @@ struct DutyPhase
   double turns() const { return duration * motor_speed / TWO_PI; }  ///< turns of the wave generator, >= 0
 };
 
-/// The motion that the joint repeats.
+/// The sequence of phases that the joint repeats.
 struct DutyCycle
 {
   std::vector<DutyPhase> phases;
@@ -48,12 +48,12 @@ struct DutyCycle
     }
     if (duty.turnsPerHour() == 0.0)
     {
-      throw InputError(path + ": the motor never turns");
+      throw InputError(path + ": the motor turns in none of the phases");
     }
     return duty;
   }
 
-  /// Whether the file can be read and its first line has these columns.
+  /// Whether the file can be read and its first line has the columns of a duty cycle.
   static bool isOne(const std::string& path)
   {
     try
@@ -96,20 +96,20 @@ class UsageHistory
 public:
   explicit UsageHistory(const LifeParameters& life);
 
-  /// Reads a file with `text`, or another duty cycle. @throws InputError.
+  /// Reads the use from a file that `text` wrote, or from any other duty cycle. @throws InputError.
   UsageHistory(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
-  void add(const DutyPhase& use) noexcept;  ///< values beyond the grid count for the outermost nodes
+  void add(const DutyPhase& use) noexcept;  ///< adds a period; values beyond the grid count for its outermost nodes
   void add(const UsageHistory& other) noexcept;
 
   double hours() const noexcept;
   double turns() const noexcept;  ///< turns of the wave generator in both directions
 
-  /// Duty cycle with a phase for each used node, which has been done once.
+  /// The whole use as one duty cycle, with a phase for each used node of the grid.
   DutyCycle duty() const;
 
-  /// The use as a duty cycle that `joint_twin life` reads.
+  /// Text of a file with the use, which `joint_twin life` reads as a duty cycle.
   std::string text() const;
 
 private:

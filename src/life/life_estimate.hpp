@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// State of the drive by its record of use.
+/// State of a drive and forecast of its life, computed from its record of use.
 struct LifeEstimate
 {
   double hours{};            ///< hours of use so far
@@ -30,7 +30,7 @@ struct LifeEstimate
   }
 };
 
-/// Ages a drive by its record of use. The grease is assumed to be changed when due.
+/// Ages a drive according to its record of use. Assumption: the grease is changed when due.
 class LifeEstimator
 {
 public:
@@ -42,9 +42,9 @@ public:
   {
   }
 
-  /// Estimates the remaining life. `record`: must contain turns. `assessment`: the last one of a compared window, null:
-  /// none; `reference_hours`: hours of use when the sound reference was learned, 0: new [h]. New loads in the record
-  /// take seconds.
+  /// Estimates the remaining life. `record`: use so far, with at least one turn; `assessment`: that of the last
+  /// compared window, null: none; `reference_hours`: hours of use at which the sound reference was learned, 0 for a new
+  /// drive [h]. A load that was in no earlier record takes seconds.
   /// @throws ParameterError if the ring has no equilibrium at one of the loads.
   LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours,
                         const ReadWear& read = {})

@@ -12,8 +12,8 @@ namespace hjt
 {
 namespace
 {
-/// Change of an indicator by one kind of wear as a function of the severity, from the signatures: 0 at severity 0,
-/// linear between the severities and beyond them.
+/// Change of an indicator by one kind of wear as a function of the severity. The function is 0 at severity 0, has the
+/// changes of the signatures at their severities, and is linear between and beyond them.
 class Response
 {
 public:
@@ -25,14 +25,14 @@ public:
     for (const Signature& signature : set.signatures)
     {
       const bool counts = signature.cause == causeOf(kind) && signature.severity > 0.0 &&
-                          // 0: the motion does not determine the indicator
+                          // a change of 0 means that the motion does not determine the indicator
                           signature.change[indexOf(indicator)] != 0.0;
       const std::size_t node = counts ? nodeOf(signature.severity, weights) : MAX_NODES;
       if (node == MAX_NODES)
       {
         continue;
       }
-      OperatingPoint to_and_fro = point;  // with loads in both directions, the share of directions does not matter
+      OperatingPoint to_and_fro = point;  // if the load has both signs, the direction of motion does not matter
       to_and_fro.direction = signature.motion.direction;
       const double alike = likeness(signature.motion, to_and_fro);
       const double weight = OTHER_MOTION * OTHER_MOTION + alike;
@@ -47,7 +47,7 @@ public:
   }
 
   bool isKnown() const noexcept { return nodes_ > 2; }
-  double alike() const noexcept { return alike_; }  ///< similarity of the most similar motion
+  double alike() const noexcept { return alike_; }  ///< similarity of the most similar motion of a signature [-]
   double lastSlope() const noexcept { return slope(nodes_ - 2); }
 
   double at(double severity) const noexcept
@@ -63,7 +63,7 @@ public:
 private:
   static constexpr std::size_t MAX_NODES = 32;
 
-  /// Index of the node of a severity, which is made if missing; MAX_NODES if there is no room.
+  /// Index of the node of a severity. The function adds a missing node, and returns MAX_NODES if no place is left.
   std::size_t nodeOf(double severity, std::array<double, MAX_NODES>& weights) noexcept
   {
     std::size_t node = 1;
@@ -103,7 +103,7 @@ private:
   std::array<double, MAX_NODES> change_{};
 };
 
-/// Solves a monotone function for `value`.
+/// Argument in -farthest ... farthest at which a monotone function has the value `value`, by bisection.
 template <class Of>
 double whereIs(double value, double farthest, Of&& of) noexcept
 {

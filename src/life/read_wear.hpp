@@ -23,8 +23,8 @@ constexpr double shareOf(double found, double runs) noexcept
   return (found + 1.0) / (runs + 2.0);
 }
 
-/// Share of drives whose wear of a kind is found, in the runs at severities 0.2 and 0.5, check-ups and work together.
-/// 0: never, for example spalls [-].
+/// Share of drives whose wear of a kind the assessment finds [-], counted over check-ups and runs at work with the
+/// severities 0.2 and 0.5. 0: never, for example spalls.
 constexpr double detectionShare(FaultKind kind) noexcept
 {
   switch (kind)
@@ -40,29 +40,27 @@ constexpr double detectionShare(FaultKind kind) noexcept
   }
 }
 
-/// Median of the smallest severity that is found, log-normal over the drives; below it the standard deviation of the
-/// logarithm. Assumption: the smallest severity of a signature, because 0.2 is found.
+/// Smallest severity that the assessment finds, log-normal over drives: median, and standard deviation of the
+/// logarithm. Assumption: the smallest severity of a signature, because the assessment finds 0.2.
 constexpr double DETECTED_SEVERITY = 0.1;
 constexpr double DETECTED_SPREAD = 0.3;
 
-/// Shares of the alarms by faults of these kinds from severity 0.3 on: those with the right first cause, and those with
-/// the right cause in the reported set.
+/// Shares of alarms, by wear and degraded lubricant of severity 0.3 or more, with the right most likely cause
+/// (RIGHT_CAUSE) and with the right cause in the reported set (IN_SET) [-].
 constexpr double RIGHT_CAUSE = shareOf(assessment_counts::RIGHT_CAUSES, assessment_counts::ALARMS);
 constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts::ALARMS);
 
 /// Share of check-ups and runs at work of sound gears that end with an alarm.
 constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
-/// Errors of WearReadings for flanks and interface, counted on lives with signals (seeds 11 and 421 of
-/// lab/lives_judged.py). In a motion similar to one of the signatures, the gain of the flanks differs by 0.06 between
-/// gears.
+/// Errors of WearReadings for flanks and interface, from lives with signals (seeds 11 and 421 of lab/lives_judged.py).
+/// In a motion similar to that of a signature, the gain for the flanks differs by 0.06 between gears.
 constexpr ReadingErrors FLANK_READING{ 0.06, 0.012, 0.005, 0.03 };
 constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };
-/// Standard deviation of the gain in a motion unlike those of the signatures, equal to `motion_error` of the signatures
-/// [-].
+/// Standard deviation of the gain [-] in a motion unlike those of the signatures: the `motion_error` of the signatures.
 constexpr double OTHER_MOTION_GAIN = 0.25;
-/// Mean shortfall of the readings as a severity, because the first flank wear reduces the preload and opens no play.
-/// Its standard deviation between drives is FLANK_READING.offset.
+/// Mean shortfall of a flank reading as a severity [-], because the first flank wear reduces the preload and opens no
+/// play. The standard deviation between drives is FLANK_READING.offset.
 constexpr double FLANK_SHORT = 0.012;
 /// Bias of the interface's reading by flank wear, relative to the flanks' reading: mean and standard deviation [-].
 constexpr double INTERFACE_SHORT = 0.55;
@@ -77,37 +75,38 @@ struct WearReading
   bool is_read{};          ///< false: the load did not change its sign, or there are no signatures of wear
   double flank{};          ///< severity of tooth_wear [-]
   double interface = 0.0;  ///< severity of interface_wear [-]
-  double alike{};          ///< similarity of the motion to those of the signatures, 0 ... 1 [-]
+  double alike{};          ///< similarity of the motion to the most similar motion of a signature, 0 ... 1 [-]
   double lost_motion{};    ///< lost motion of the windows [rad]
   /// increase of the lost motion per unit of `flank`, at the largest severities of the signatures [rad]
   double lost_motion_slope{};
 };
 
-/// Measures the wear from the mean of the last windows, independent of the verdict.
+/// Measures the wear from the mean of the last windows, independently of the verdict.
 ///
 /// Law:   w(s_f) = d_w,   sum over K1, K2 of (k(s_f) + l_k(s_i)) / k_0 = sum of d_k / k_0
-/// where  w, k, l  change of lost motion and of a stiffness by tooth wear, and of a stiffness by interface wear: means
-///                 of the signatures, weighted by the similarity of their motions, linear between their severities
-///        d, k_0   differences from the reference; stiffness of the sound drive
-/// Only tooth wear changes the lost motion: other wear has less than a tenth of its effect. Both stiffnesses enter as a
-/// sum, because the share of each in the softening depends on the largest load.
+/// where  w, k     change of the lost motion and of a stiffness by tooth wear, as functions of its severity s_f
+///        l_k      change of a stiffness by interface wear, as a function of its severity s_i. All three are means over
+///                 the signatures, weighted by the similarity of the motions, and linear between severities
+///        d, k_0   difference of the window from the reference; stiffness of the sound drive
+/// Only tooth wear counts for the lost motion, because other wear has less than a tenth of its effect. The law uses the
+/// sum over both stiffnesses, because the share of each in the softening depends on the largest load.
 WearReading readWear(const WindowResidual& residual, const OperatingPoint& point, const SignatureSet& set) noexcept;
 
-/// Measured wear with the hours of use.
+/// A measurement of the wear with the hours of use at its time.
 struct DatedReading
 {
   double hours;
   WearReading reading;
 };
 
-/// All measured wear over the use.
+/// All measurements of the wear of a drive.
 struct ReadWear
 {
   std::vector<DatedReading> readings;    ///< ordered by hours
   double lost_motion_limit{ HUGE_VAL };  ///< measured lost motion at which the drive's use ends [rad]
 };
 
-/// Trends of wear from the readings and the nominal use. `reference_hours`: hours of use when the reference was learned
+/// Trends of wear from readings and nominal use. `reference_hours`: age of the drive when its reference was learned
 /// [h].
 inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const FaultScaleParameters& fault_scale,
                            double reference_hours)
@@ -146,7 +145,7 @@ inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const Fa
     const double at_end = last.flank + assessment_errors::FLANK_SHORT +
                           (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
     const Usage now = use.until(read.readings.back().hours);
-    // Nominal severities are means of both flanks, but the depth at the end is that of the worse flank.
+    // A severity is the mean wear of both flanks, but the limit concerns the more worn flank.
     trends.flank_depth = now.mean_flank > 0.0 ? flank * now.flank_wear / now.mean_flank : flank;
     trends.reading_at_end = use.flank().of(at_end * flank) / flank;
   }

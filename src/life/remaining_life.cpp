@@ -14,9 +14,9 @@ using namespace assessment_errors;
 
 constexpr double SEVERITY_RANGE = 0.9;  // range of the signatures' severities: 0.1 to 1
 constexpr double LEAST_FATIGUE_SPREAD = 1e-6;
-constexpr double LEAST_SPREAD = 0.1;  // of the logarithm of a severity, between two assessments
+constexpr double LEAST_SPREAD = 0.1;  // least standard deviation of a severity's logarithm between assessments
 
-/// Hours until the future use has increased a quantity by `left`; `of` takes the quantity from a usage.
+/// Hours until the future use has increased a quantity by `left`. `of`: function that returns the quantity of a Usage.
 template <class Of>
 double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
 {
@@ -32,8 +32,7 @@ double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
   return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
 }
 
-/// Miner's sum at a place after a use. @param strength logarithm of the flexspline's strength at the place over the
-/// median
+/// Miner's sum at a place after a use. @param strength logarithm of (strength at the place / median strength)
 double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;
@@ -46,15 +45,15 @@ double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcep
                                           (1.0 - share) * weaker + share * stronger;
 }
 
-/// Variance of the logarithm of the ratio of future to past mean rates of wear, for unit scatter between fillings of
-/// grease. The present filling belongs to both. @param so_far,ahead numbers of fillings
+/// Variance of ln(future mean rate of wear / past mean rate), if the logarithms of the rates of single fillings of
+/// grease have unit variance. The current filling belongs to past and future. @param so_far,ahead numbers of fillings
 double changeOfRate(double so_far, double ahead) noexcept
 {
   if (ahead <= 0.0)
   {
     return 0.0;
   }
-  const auto squares = [](double fillings)  // of the fillings' lengths
+  const auto squares = [](double fillings)  // sum of the squares of the fillings' lengths
   { return std::floor(fillings) + squared(fillings - std::floor(fillings)); };
   const double begun = so_far - std::floor(so_far);
   const double left = std::min(1.0 - begun, ahead);
@@ -63,7 +62,7 @@ double changeOfRate(double so_far, double ahead) noexcept
          squares(ahead - left) / squared(ahead);
 }
 
-/// Wear of a particle as a severity, and the probability that it is found.
+/// Wear of a particle as a severity, and the probability that an assessment finds this wear.
 struct Wear
 {
   Wear(FaultKind kind, double size) noexcept
@@ -76,7 +75,8 @@ struct Wear
   double found;
 };
 
-/// Density of an estimate for a log-normal error about this severity, over that of any estimate [-].
+/// Probability density of an estimated severity for a log-normal error about the true `severity`, over the density of
+/// any estimate in SEVERITY_RANGE [-].
 double estimateDensity(const Alternative& estimate, double severity) noexcept
 {
   if (severity <= 0.0 || estimate.severity <= 0.0)
@@ -92,7 +92,8 @@ double estimateDensity(const Alternative& estimate, double severity) noexcept
 
 double RemainingHours::crps(double hours) const noexcept
 {
-  // Integral of (F - H)^2 for F linear from a to b: length (a^2 + a b + b^2) / 3, with H subtracted from a and b.
+  // Integral of (F - H)^2, with F the distribution and H the step at `hours`. Where F - H is linear from a to b, the
+  // integral is length (a^2 + a b + b^2) / 3.
   double sum = 0.0;
   double reached = 0.0;
   const auto add = [&](double from, double to, double at_from, double at_to, double step)
@@ -140,7 +141,7 @@ RemainingLife::RemainingLife(const Parameters& parameters)
   }
 }
 
-/// Strength at each place below which the use so far would have broken the drive: logarithm over the median.
+/// Strength at each place below which the use so far would have broken the drive: ln(strength / median).
 RemainingLife::Weakest RemainingLife::weakestLeft(const Usage& so_far) const noexcept
 {
   Weakest weakest{};
@@ -176,7 +177,7 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
   }
   drive.variation.spall_growth =
       parameters_.spall_growth * factorBelow(HUGE_VAL, parameters_.spall_spread, point[SPALL_GROWTH]);
-  // -ln of the Weibull share of remaining bearings, for the life that would have ended by now and for a first spall
+  // -ln of the Weibull share of bearings without a spall: `least` if the life would end now, `whole` for a first spall
   // now.
   const auto lasting = [this](double turns) { return std::pow(turns / bearing_.scale, bearing_.shape); };
   const double least = lasting(so_far.bearing_turns / (1.0 + drive.variation.spall_growth));
@@ -190,7 +191,7 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
   drive.strength = {};
   drive.strength[AT_TRANSITION] = TRANSITION_SCATTER * normalAt(point[TRANSITION]);
   const double spread = std::max(parameters_.fatigue_spread, LEAST_FATIGUE_SPREAD);
-  double weakest_left = -FARTHEST;  // in standard deviations; a weaker drive has broken
+  double weakest_left = -FARTHEST;  // least strength of an unbroken drive, as a normal deviate
   for (std::size_t place = 0; place < STRESS_PLACES; ++place)
   {
     weakest_left = std::max(weakest_left, (weakest[place] - drive.strength[place]) / spread);
@@ -231,7 +232,7 @@ double RemainingLife::likelihood(const Assessment& assessment, const Usage& so_f
         (item.cause == causeOf(FaultKind::TOOTH_WEAR) || item.cause == causeOf(FaultKind::INTERFACE_WEAR)))
     {
       known += item.confidence;
-      sum += item.confidence;  // the readings already contain this evidence, which is equal for all drives
+      sum += item.confidence;  // equal for all particles, because the readings already contain this evidence
       return;
     }
     if (item.cause == causeOf(FaultKind::TOOTH_WEAR))
@@ -269,7 +270,7 @@ std::array<double, RemainingHours::CAUSES.size()> RemainingLife::hoursLeft(const
     return hoursUntil(future_load, 1.0 - fatigueBy(so_far, strength, place),
                       [&](const Usage& usage) { return fatigueBy(usage, strength, place); });
   };
-  // Both rates change by the same factor, that of the grease.
+  // The rates of flank and interface wear change by the same factor, because the grease is the same.
   const auto until_worn = [&](double end, double now, auto&& of)
   {
     const double ahead = so_far.fillings * (end / std::max(now, 1e-300) - 1.0);
@@ -325,7 +326,7 @@ RemainingHours RemainingLife::remaining(const Usage& so_far, const FutureLoad& f
   return result;
 }
 
-/// Bins and quantiles of the ends; `sum`: sum of their weights.
+/// Fills bins and quantiles of `result` from the particles' ends. `sum`: sum of the weights of the ends.
 void RemainingLife::summarize(RemainingHours& result, double sum) noexcept
 {
   std::sort(ends_.begin(), ends_.end(), [](const End& a, const End& b) { return a.hours < b.hours; });
@@ -345,7 +346,7 @@ void RemainingLife::summarize(RemainingHours& result, double sum) noexcept
       result.quantile[quantile] = end.hours;
     }
   }
-  for (; quantile < result.quantile.size(); ++quantile)  // the sum of the weights may be less than 1 by rounding
+  for (; quantile < result.quantile.size(); ++quantile)  // rounding may leave the sum of the weights below 1
   {
     result.quantile[quantile] = ends_.back().hours;
   }

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-constexpr double FARTHEST = 30.0;  // standard deviations: the limit of the normal distribution in doubles
+constexpr double FARTHEST = 30.0;  // largest normal deviate that is used; doubles hold its probability
 
 inline double squared(double value)
 {
@@ -28,31 +28,32 @@ inline double normalShare(double deviation) noexcept
   return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
 }
 
-/// Deviate below which a share `share` of the normal distribution truncated at `most` lies.
+/// Quantile for `share` of the standard normal distribution, truncated above at `most`.
 inline double normalBelow(double most, double share) noexcept
 {
   const double part = share * normalShare(std::clamp(most, -FARTHEST, FARTHEST));
   return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * std::clamp(part, 1e-300, 1.0 - 1e-16));
 }
 
-/// Log-normal factor about 1 of a drive, truncated at `ends_at`, where the drive would have ended.
+/// Quantile for `share` of a log-normal factor with median 1, truncated above at `ends_at`, because a larger factor
+/// would have ended the drive. `spread`: standard deviation of the logarithm.
 inline double factorBelow(double ends_at, double spread, double share) noexcept
 {
   return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
 }
 
-/// Quantile of the standard normal distribution.
+/// Quantile for `share` of the standard normal distribution.
 inline double normalAt(double share) noexcept
 {
   return normalBelow(FARTHEST, share);
 }
 
-/// Tabulated distribution of a factor of wear.
+/// Tabulated distribution of a drive's factor of wear relative to the nominal drive.
 class FactorTable
 {
 public:
-  /// Computes the distribution for a drive truncated at `ends_at`, given the readings. `spread`: prior standard
-  /// deviation of the logarithm.
+  /// Computes the distribution, given the readings of `trend`. `spread`: prior standard deviation of the logarithm;
+  /// `ends_at`: factor at which the distribution is truncated, because a larger one would have ended the drive.
   void given(const WearTrend& trend, double spread, double ends_at) noexcept
   {
     constexpr double REACH = 6.5;  // standard deviations
@@ -108,25 +109,25 @@ private:
   bool is_read_{};
 };
 
-/// Number of fatigue strengths in the table of fatigue. They are evenly spaced in the logarithm; between them the
-/// logarithm of the fatigue is linear.
+/// Number of fatigue strengths in the table Usage::fatigue. The strengths are evenly spaced in the logarithm, and the
+/// logarithm of the fatigue is interpolated linearly.
 constexpr std::size_t STRENGTHS = 49;
 constexpr double STRENGTH_REACH = 1.5;  // range of the logarithm on either side of the median
 
-/// Strength of entry i over the median.
+/// Fatigue strength of entry i of the table Usage::fatigue, over the median of all drives [-].
 inline double strengthAt(std::size_t i)
 {
   return std::exp(STRENGTH_REACH * (2.0 * static_cast<double>(i) / static_cast<double>(STRENGTHS - 1) - 1.0));
 }
 
-/// Use of a drive, as the ageing of the nominal drive.
+/// Use of a drive, expressed as the ageing of the nominal drive by this use.
 struct Usage
 {
-  double flank_wear{};      ///< wear of the more worn flank (leading or trailing) of the nominal drive [m]
-  double mean_flank{};      ///< mean wear of its leading and trailing flanks: half of the growth of the play [m]
-  double interface_wear{};  ///< wear of the nominal drive [m]
-  double bearing_turns{};   ///< [turns at rated torque]
-  /// Miner's sums by strength and place, because fatigue is not in proportion to that of the nominal drive.
+  double flank_wear{};      ///< wear of the nominal drive's more worn flank, leading or trailing [m]
+  double mean_flank{};      ///< mean wear of the nominal drive's two flanks: half of the growth of the play [m]
+  double interface_wear{};  ///< interface wear of the nominal drive [m]
+  double bearing_turns{};   ///< number of turns at rated torque that wear the bearing as much
+  /// Miner's sums by fatigue strength and place; the sum of a drive is not in proportion to that of the nominal drive.
   std::array<std::array<double, STRESS_PLACES>, STRENGTHS> fatigue{};
   double fillings{};  ///< number of used fillings of grease [-]
 
@@ -149,13 +150,12 @@ struct Usage
   }
 };
 
-/// Future use from now: entry i is the use after i times `step` hours. The last interval continues without end.
+/// Future use from now on. After the last interval, the use of the last interval repeats without end.
 struct FutureLoad
 {
   double step{};             ///< [h]
-  std::vector<Usage> usage;  ///< use from now, ascending, the first 0; at least two entries
-  /// Wear depths of flanks and interface at the end of life, reduced to the loads of the new drive [m]; 0: those of the
-  /// parameters.
+  std::vector<Usage> usage;  ///< entry i: use in the next i times `step` hours; at least two entries
+  /// Equivalent wear depths (LoadFeedback) of flanks and interface at the end of life [m]; 0: limits of the parameters.
   double flank_limit{};
   double interface_limit{};
 };
@@ -186,8 +186,8 @@ struct RemainingHours
   std::array<double, CAUSES.size()> by_cause{};  ///< probability of each cause of the end, in the order of CAUSES [-]
 };
 
-/// Whether an assessment replaces an earlier one. It must have compared its window. A window without deviation that
-/// does not show play does not replace one that shows it.
+/// Whether an assessment replaces an earlier one. It does if it compared its window, with one exception: of two
+/// assessments at level OK, one that does not show play does not replace one that shows play.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&
@@ -208,28 +208,28 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 ///
 /// k: tooth_wear, interface_wear, spall of a race or ball; s_k: severity of the particle since the reference was
 /// learned; p_k, e_k: probability and severity in the assessment; f: log-normal density about s_k with the assessment's
-/// deviation; u: prior density of severities; D_k: probability that such wear is found (1 for a named spall); r: share
-/// of cases in which the cause is in no set; q: share of false alarms (life/read_wear.hpp). Errors of the assessments
-/// of one drive are mostly those of its signatures and persist, so that only the last assessment counts.
+/// deviation; u: prior density of severities; D_k: probability that the assessment finds wear of severity s_k (1 for a
+/// named spall); r: share of cases in which the reported set lacks the cause; q: share of false alarms
+/// (life/read_wear.hpp). Only the last assessment counts, because the errors of a drive's assessments persist.
 ///
-/// For wear with readings (WearTrends) the factor of a particle is drawn from its distribution given the readings, and
-/// the assessment informs about spalls only: D_k f / u of wear is 1. The future rate of wear differs from the past one
-/// by a log-normal factor, because each filling of grease has a rate of its own (RATE_SCATTER); the present filling
+/// For wear with readings (WearTrends) the factor of a particle is drawn from its distribution given the readings. The
+/// assessment then informs about spalls only: D_k f / u of wear is 1. The future rate of wear differs from the past
+/// rate by a log-normal factor, because each filling of grease has a different rate (RATE_SCATTER). The current filling
 /// continues until its end.
 class RemainingLife
 {
 public:
   explicit RemainingLife(const Parameters& parameters);
 
-  /// Remaining life of a drive that is in use after `so_far`, with this future use. `assessment`: the last valid one,
-  /// null: none; `at_reference`: use when the sound reference of its window was learned, 0: new. The function does not
-  /// allocate.
+  /// Remaining life of a drive that is still in use after the use `so_far`. `assessment`: last valid assessment, null:
+  /// none; `at_reference`: use at which the sound reference of the assessment was learned, 0 for a new drive. The
+  /// function does not allocate.
   RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
                            const Usage& at_reference, const WearTrends& trends = {}) noexcept;
 
 private:
   static constexpr std::size_t PARTICLES = 4096;
-  // share of drives with a spall, which come first; independent of the probability of spalls
+  // share of the particles with a spall, which are the first ones; independent of the probability of spalls [-]
   static constexpr double SPALLED = 0.25;
   enum Nature
   {
@@ -246,14 +246,14 @@ private:
   };
   using Point = std::array<double, NATURES>;  // uniform in 0 ... 1
 
-  /// A drive that `so_far` has not ended.
+  /// A particle: a drive that the use so far has not ended.
   struct Drive
   {
     UnitVariation variation;
     std::array<double, STRESS_PLACES> strength;  // logarithms over the median
     double log_weight;  // logarithm of the probability that bearing and flexspline last, with or without a spall
     double rate_ahead;  // standard normal deviate of the future rate of wear
-    double flank_end;   // flank wear at the end of life, reduced to the loads of the new drive [m]
+    double flank_end;   // equivalent flank wear (LoadFeedback) at the end of life [m]
   };
   struct End
   {
@@ -261,7 +261,7 @@ private:
     double weight;
   };
 
-  using Weakest = std::array<double, STRESS_PLACES>;  // logarithms of strengths by place
+  using Weakest = std::array<double, STRESS_PLACES>;  // logarithms of strengths over the median, by place
   Weakest weakestLeft(const Usage& so_far) const noexcept;
   Drive drive(const Point& point, const Usage& so_far, const Weakest& weakest, bool is_spalled,
               const WearTrends& trends) const noexcept;
@@ -283,8 +283,8 @@ private:
   std::vector<End> ends_;          // working memory
 };
 
-/// Wear of the nominal drive by a duty cycle in closed form, with the loads per turn of the new drive and ageing
-/// grease.
+/// Wear of the nominal drive by a duty cycle in closed form, with ageing grease and the loads per turn of the new
+/// drive.
 class NominalUse
 {
 public:
@@ -320,11 +320,11 @@ public:
     interface_limit_ = interface_.of(life.interface_wear_limit);
   }
 
-  /// Wear depths reduced to the loads of the new drive: of the mean of both flanks, and of the interface.
+  /// Equivalent wear depths (LoadFeedback) as functions of the real depths: of the flanks' mean and of the interface.
   const LoadFeedback& flank() const { return flank_; }
   const LoadFeedback& interface() const { return interface_; }
 
-  /// Use of a new drive.
+  /// Use of a drive in its first `hours` hours.
   Usage until(double hours) const
   {
     // Mean factor of wear: grease of age g wears 1 + (factor - 1) g times as fast, with g linear in time.
@@ -350,7 +350,7 @@ public:
     return usage;
   }
 
-  /// `hours`: length of the forecast; beyond it the use continues as in the last interval.
+  /// Use after `now` hours, for a forecast over `hours` hours in `stretches` intervals.
   FutureLoad from(double now, double hours, int stretches) const
   {
     FutureLoad future_load;
@@ -366,9 +366,9 @@ public:
   }
 
 private:
-  static constexpr double FARTHEST = 1.5;  // share of the limits
+  static constexpr double FARTHEST = 1.5;  // largest tabulated wear, as a share of its limit
 
-  static constexpr double SLOWEST = 1e-3;  // share of the new drive's rate, which keeps a depth without wear defined
+  static constexpr double SLOWEST = 1e-3;  // least rate of wear over that of the new drive, so that no rate is zero
 
   /// Ratio of two rates; 1 for a use without wear.
   static double share(double rate, double of) { return of > 0.0 ? std::max(rate / of, SLOWEST) : 1.0; }
@@ -379,7 +379,7 @@ private:
   bool grease_changes_;
   LoadFeedback flank_;
   LoadFeedback interface_;
-  double flank_limit_{};  // flank wear at the end of life, reduced to the loads of the new drive [m]
+  double flank_limit_{};  // equivalent flank wear (LoadFeedback) at the end of life [m]
   double interface_limit_{};
 };
 }  // namespace hjt

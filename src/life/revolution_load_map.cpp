@@ -38,7 +38,7 @@ Cell cellOf(double value, double step, int stages)
   return { static_cast<std::size_t>(index), place - index };
 }
 
-/// Larger magnitude of each entry.
+/// Load with the larger magnitude of each pair of corresponding numbers.
 RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 {
   return combined(a, b, [](double x, double y) { return std::max(std::abs(x), std::abs(y)); });
@@ -151,7 +151,7 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
               });
   if (!walk_.status().ok())
   {
-    throw ParameterError("no equilibrium under a load of " + numberText(load_torque) +
+    throw ParameterError("there is no equilibrium under a load of " + numberText(load_torque) +
                          " N.m: " + explanationOf(walk_.status()));
   }
   revolution_load.bending_range = bending.max - bending.min;
@@ -159,7 +159,7 @@ RevolutionLoad RevolutionLoadAnalysis::under(double load_torque)
   return revolution_load;
 }
 
-/// Analysis of the drive with the wear of an age.
+/// Analysis of the drive with the flank and interface wear of `age`.
 RevolutionLoadAnalysis RevolutionLoadMap::analysisOf(const DriveAge& age) const
 {
   FaultList faults = faults_at_start_;

@@ -18,16 +18,17 @@
 
 namespace hjt
 {
-/// Creep of the outer race of the wave generator's bearing in the rim, and the slip between them.
+/// Creep of the outer race of the wave generator's bearing in the rim, and the slip between race and rim.
 ///
-/// The race rolls in the rim, pressed on at the lobes. If the race were held, its surface would slip with
+/// The lobes press the race on the rim, and the race rolls in the rim. If the race were held, its surface would slip
+/// with
 ///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, per wave generator angle]
-/// where  l      contact.slip_lever; psi_i' rate of the chord's tilt at tooth i against the turning of the wave [-]
-///        r, eps_i  bore radius [m]; strain of the rim at tooth i [-], while the race does not stretch
-///        f, g_i  raceFit; wear of rim and race [m]
-/// The race is free, because the friction of the balls on it is a hundredth of that of the rim. It creeps at the rate c
-/// of least friction loss, at which the friction forces cancel: the median of q_i weighted by the normal forces. The
-/// two rolling surfaces wear by sum F_i |q_i - c|.
+/// where  l, psi_i'  contact.slip_lever [m]; rate of the chord's tilt at tooth i against the turning of the wave [-]
+///        r, eps_i   bore radius [m]; strain of the rim at tooth i [-] (the race does not stretch)
+///        f, g_i     raceFit; wear of rim and race at tooth i [m]
+/// The race is free, because the friction of the balls on the race is a hundredth of the friction of the rim. The race
+/// creeps at the rate c [m/rad] at which the friction forces cancel, which is the median of q_i with the normal forces
+/// F_i as weights. The surfaces wear in proportion to sum F_i |q_i - c|.
 class RaceCreep
 {
 public:
@@ -59,7 +60,7 @@ private:
   std::vector<Slip> slips_;
 };
 
-/// Computes with the tooth model the load of one turn for one drive at any number of loads.
+/// Computes the loads of one turn of the wave generator for one drive with the tooth model.
 class RevolutionLoadAnalysis
 {
 public:
@@ -70,7 +71,7 @@ public:
                              RaceCreep(parameters), positions)
   {
   }
-  /// Analysis of a joint of that drive with other faults.
+  /// Analysis of `joint`, whose faults may differ from those in the parameters of `stress` and `creep`.
   RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver, const FlexsplineStress& stress,
                          const RaceCreep& creep, int positions);
 
@@ -87,24 +88,24 @@ private:
   Eigen::VectorXd running_;  // derivatives of the teeth by the wave generator's angle
 };
 
-/// Loads of one turn as a function of load torque and wear, computed with the tooth model at some stages of wear,
-/// bilinear between them.
+/// Loads of one turn as a function of load torque and wear. The tooth model computes the loads at some stages of wear;
+/// the interpolation between the stages is bilinear.
 class RevolutionLoadMap
 {
 public:
   /// `positions`: number of wave generator angles in a tooth pitch.
   RevolutionLoadMap(const Parameters& parameters, int positions);
 
-  /// Computes the loads of the duty cycle that are missing, at every stage of wear; takes some seconds.
+  /// Computes the missing loads of the duty cycle at every stage of wear, which takes some seconds.
   /// @throws ParameterError if the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
-  /// Load of one turn at a covered load torque [N.m] and a wear [m]. Wear beyond its limits counts as wear at the
-  /// limits.
+  /// Load of one turn at a load torque [N.m] that `cover` computed and a wear [m]. Wear beyond its limit counts as the
+  /// limit.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
-  /// Largest difference from the tooth model at the centres of all cells, over the largest value of the quantity at any
-  /// load [-]. Slow.
+  /// Largest error of the interpolation, compared with the tooth model halfway between stages, over the largest value
+  /// of the quantity at any load [-]. The function is slow.
   double largestError() const;
 
 private:

@@ -11,14 +11,13 @@ namespace hjt
 /// Errors of the readings of one kind of wear.
 struct ReadingErrors
 {
-  double gain;         ///< relative gain error of a drive's readings, constant: standard deviation
-  double offset;       ///< offset of a drive's readings as a severity, constant: standard deviation
-  double noise;        ///< noise of a reading as a severity
-  double noise_share;  ///< noise of a reading as a share of it
+  double gain;         ///< standard deviation of the relative gain error, which is constant for a drive [-]
+  double offset;       ///< standard deviation of the offset as a severity, which is constant for a drive [-]
+  double noise;        ///< constant part of a reading's noise, as a severity: standard deviation [-]
+  double noise_share;  ///< part of a reading's noise in proportion to the reading: standard deviation over reading [-]
 };
 
-/// A reading of wear and the wear of the nominal drive after the same use, both as severities reduced to the loads of
-/// the new drive.
+/// Reading of wear, and wear of the nominal drive after equal use, as severities of equivalent depths (LoadFeedback).
 struct WearPoint
 {
   double nominal;
@@ -28,9 +27,9 @@ struct WearPoint
 /// Rate of wear of a drive, from readings over its use.
 ///
 /// Law:   r_i = g u_i + d + n_i,   g = f (1 + b),   n_i^2 = a^2 + (c r_i)^2 + (v (r - r_i))^2
-/// where  u, r  WearPoint, without index the last one;  f  wear of the drive over that of the nominal drive
-///        b, d  ReadingErrors::gain and offset, normal about 0;  a, c  noise and noise_share
-///        v     RATE_SCATTER: the rate may have changed, the more the older the reading is
+/// where  u, r  severities of nominal drive and reading of a WearPoint, without index those of the last one
+///        f     wear of the drive over that of the nominal drive;  b, d  errors of gain and offset, normal about 0
+///        a, c  ReadingErrors::noise, noise_share;  v  RATE_SCATTER, because the rate may have changed since reading i
 /// The likelihood is integrated over d; g is normal.
 class WearTrend
 {
@@ -60,7 +59,7 @@ public:
 
   bool isKnown() const noexcept { return is_known_; }
 
-  /// Logarithm of the readings' density for a factor of the drive, without the part common to all factors.
+  /// Logarithm of the readings' probability density for a drive with the factor f, up to a constant.
   double logDensity(double factor) const noexcept
   {
     const double variance = variance_ + gain_ * gain_ * factor * factor;
@@ -68,8 +67,8 @@ public:
     return -0.5 * (off * off / variance + std::log(variance));
   }
 
-  /// Severity of the nominal drive at which the readings of a drive with this factor will show `reading`. `by_gain`,
-  /// `by_offset`: standard normal deviates of the readings' errors.
+  /// Severity of the nominal drive at which a drive with the factor f will have the reading `reading`. `by_gain`,
+  /// `by_offset`: standard normal deviates of the errors of gain and offset.
   double nominalAt(double reading, double factor, double by_gain, double by_offset) const noexcept
   {
     const double prior = gain_ * gain_ * factor * factor;
@@ -89,7 +88,7 @@ private:
   double ones_{};
 };
 
-/// Trends of both kinds of wear from readings.
+/// Trends of flank wear and interface wear, from readings.
 struct WearTrends
 {
   WearTrend flank;
@@ -98,14 +97,15 @@ struct WearTrends
   double reading_at_end{ HUGE_VAL };  ///< reading of the flanks at which the lost motion ends the drive's use [-]
 };
 
-/// Effect of wear on the loads that cause it: wear depth reduced to the loads of the new drive as a function of the
-/// real depth, linear between nodes and beyond.
+/// Wear changes the loads that cause it. The equivalent wear depth is the depth that equal use would cause with the
+/// loads of the new drive. This class gives it as a function of the real depth, linear between and beyond nodes.
 class LoadFeedback
 {
 public:
   static constexpr std::size_t NODES = 9;
 
-  /// @param farthest depth of the last node [m]  @param rate_at rate of wear at a depth over that of the new drive [-]
+  /// @param farthest depth of the last node [m]
+  /// @param rate_at rate of wear at a depth, over the rate of the new drive [-]
   template <class RateAt>
   LoadFeedback(double farthest, RateAt&& rate_at) : step_(farthest / static_cast<double>(NODES - 1))
   {

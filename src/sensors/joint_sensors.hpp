@@ -23,8 +23,8 @@ namespace hjt
 ///        N    counts per turn                   [-]
 ///        n    count, 0 ... N - 1                [counts]
 ///
-/// The count does not contain whole turns. A real drive counts them by the jumps of the count, which fails with fewer
-/// than two readings a turn. This model takes the turns from the true angle instead.
+/// The count does not contain whole turns. A real drive counts the turns by the jumps of the count, which needs at
+/// least two readings per turn. This model takes the turns from the true angle.
 class AbsoluteEncoder
 {
 public:
@@ -39,7 +39,7 @@ public:
     return static_cast<std::uint32_t>(in_turn < 0 ? in_turn + counts_per_turn_ : in_turn);
   }
 
-  /// Whole turns of the true angle plus the count's part of a turn [rad].
+  /// Whole turns of the true angle plus the angle of the count [rad].
   double unwrappedAngle(double output_angle) const noexcept
   {
     return static_cast<double>(stepsFromZero(output_angle)) * quantum_;
@@ -74,7 +74,7 @@ public:
     return static_cast<std::int64_t>(std::floor(motor_angle * counts_per_radian_));
   }
 
-  /// Lower edge of this count [rad].
+  /// Smallest angle that has the count `count` [rad].
   double angle(std::int64_t count) const noexcept { return static_cast<double>(count) * quantum_; }
 
 private:
@@ -82,8 +82,8 @@ private:
   double quantum_;  // one count [rad]
 };
 
-/// Pairs of independent standard normal numbers. Each is a function of seed, channel and index, so that a reading has
-/// the same noise live, replayed, offline and in any number of threads.
+/// Pairs of independent standard normal numbers. Each number is a function of seed, channel and index. A reading
+/// therefore has equal noise live, in a replay, offline, and with any number of threads.
 ///
 /// Source: Philox4x32-10 (Salmon, Moraes, Dror, Shaw: Parallel random numbers, as easy as 1, 2, 3. SC 2011), then the
 /// Box-Muller transform.
@@ -120,21 +120,21 @@ private:
 ///
 /// Law:   a' = a + e sin a + e_2 sin 2 a + e_4 sin 4 a + s n
 ///                                   angle that an encoder resolves into counts          [rad]
-///        T' = T + s_T n, rounded    torque estimated from the current                   [N.m]
-/// where  e         amplitude of the error once a turn, of an eccentric disc or magnet   [rad]
-///        e_2, e_4  amplitudes of the errors of an oval disc and of the read head         [rad]
+///        T' = T + s_T n, rounded    motor torque estimated from the current             [N.m]
+/// where  a, T      true angle, true motor torque                                        [rad], [N.m]
+///        e         amplitude of the error of an eccentric disc or magnet, once per turn [rad]
+///        e_2, e_4  amplitudes of the errors by an oval disc and by the read head        [rad]
 ///        s, s_T    rms noise of the angle and of the torque                             [rad], [N.m]
 ///        n         standard normal number, a function of seed, sensor and step          [-]
-/// All readings have the same delay in whole steps. An effect of size zero changes no bit of a reading.
+/// All readings have the same delay, a whole number of steps. An effect of size zero changes no bit of a reading.
 ///
 /// A velocity is the difference quotient of two readings of an angle, as in a drive:
 /// Law:   v = (a_k - a_(k-n)) / (n P),  n = sensors.velocity_window / P rounded, at least 1
-/// where  P    time between two steps                                                [s]
-/// With fewer than n + 1 readings, the difference covers the available ones. Before two readings, and before the end of
-/// the delay, the velocity is zero.
+/// where  a_k  reading of the angle in step k [rad];  P  time between two steps [s];  n  number of steps
+/// With fewer than n + 1 readings the difference is over the available readings. With fewer than two readings, and
+/// during the delay, the velocity is zero.
 ///
-/// `update` only stores the true values. The first reading of a step computes its errors. Between two updates several
-/// threads may read.
+/// `update` only stores true values. The first reading of a step computes its errors. Several threads may read at once.
 class JointSensors
 {
 public:
@@ -215,7 +215,7 @@ private:
   struct Instant
   {
     Instant() = default;
-    Instant(const Instant& other) noexcept  // a reading of the copy computes the same errors
+    Instant(const Instant& other) noexcept  // without the computed errors, which a reading of the copy computes again
       : step(other.step), angles(other.angles), motor_torque(other.motor_torque)
     {
     }
@@ -230,7 +230,7 @@ private:
     mutable std::atomic<double> sensed_output{};  // [rad]
   };
 
-  /// The instant `back` steps ago, or the oldest one.
+  /// The instant `back` steps ago, or the oldest stored instant.
   const Instant& instant(std::size_t back) const noexcept
   {
     const std::size_t kept = std::min(back, count_ - 1);
@@ -259,7 +259,7 @@ private:
     return angles;
   }
 
-  /// Periodic error of an encoder, by orders 1, 2 and 4 of its turn [rad].
+  /// Error of an encoder that repeats every turn, with 1, 2 and 4 cycles per turn [rad].
   static double lines(double angle, double eccentricity, const std::array<double, 2>& others) noexcept
   {
     double error = 0.0;

@@ -18,8 +18,8 @@ namespace hjt
 {
 namespace
 {
-/// One size of the catalogue. Stiffness and ratings: Harmonic Drive, CSF/HFUS. Friction at ratio 100: Schaeffler TPI
-/// 275 (RT1-H-CS), which lacks sizes 11 and 32. The figures of size 11 have not been checked against the catalogue.
+/// One size of the catalogue. Source of stiffness and ratings: Harmonic Drive, CSF/HFUS. Source of the friction at
+/// ratio 100: Schaeffler TPI 275 (RT1-H-CS), which lacks sizes 11 and 32. The figures of size 11 are not verified.
 struct CatalogueSize
 {
   double size;
@@ -61,16 +61,16 @@ inline constexpr std::array<CatalogueRating, 24> CATALOGUE_RATINGS{ {
 } };
 
 constexpr double CONFIGURED_SIZE = 25.0;
-constexpr double TORSION_ERROR = 1e-4;  // relative error of a fitted twist
+constexpr double TORSION_ERROR = 1e-4;  // largest relative error of a fitted torsion [-]
 constexpr int TORSION_TRIALS = 30;
-constexpr int FITTED_BITS = 12;          // bits of a fitted torque's parameter
-constexpr double LEAST_OF_START = 1e-3;  // least tried value relative to the start of the fit
+constexpr int FITTED_BITS = 12;          // number of correct bits of a parameter that is fitted to a torque
+constexpr double LEAST_OF_START = 1e-3;  // least tried value over the start value of the fit [-]
 constexpr int CATALOGUE_RATIO = 100;     // ratio of the catalogue's friction
 constexpr const char* ORIGIN = "gear";
 constexpr const char* PRELOAD = "bearing.race_preload";
 constexpr const char* VISCOSITY = "bearing.viscosity";
 
-/// Sets parameters by their keys, each with its rule.
+/// Sets parameters by their keys, and records the rule that gave each value.
 class Designer
 {
 public:
@@ -130,7 +130,7 @@ void requireInRange(const GearRequest& request)
   }
 }
 
-/// Checks whether the given figures are possible for a gear. @throws ParameterError.
+/// Checks the figures of a request. @throws ParameterError if a figure is impossible for a gear.
 void requireFigures(const GearRequest& request)
 {
   const auto require = [](const std::vector<double>& values, std::size_t count, bool rising, const char* what)
@@ -144,8 +144,8 @@ void requireFigures(const GearRequest& request)
       throw ParameterError(std::string("gear: ") + what);
     }
   };
-  require(request.stiffness, 3, false, "stiffness needs three values K1, K2, K3 > 0 [N.m/rad]");
-  require(request.breakpoints, 2, true, "breakpoints needs two values 0 < T1 < T2 [N.m]");
+  require(request.stiffness, 3, false, "stiffness needs three values > 0: K1, K2 and K3 [N.m/rad]");
+  require(request.breakpoints, 2, true, "breakpoints needs two values with 0 < T1 < T2: T1 and T2 [N.m]");
   require(request.ratings, 4, false,
           "ratings needs four values > 0: rated, average, repeated peak and momentary peak torque [N.m]");
   for (const std::optional<double>& torque : { request.starting_torque, request.no_load_torque })
@@ -185,17 +185,18 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
   designer.set("gear.flexspline_inner_radius", gear.flexspline_inner_radius, given(request.bore_radius, by_size));
   designer.set("gear.rim_thickness", gear.rim_thickness, given(request.rim_thickness, by_size));
   designer.set("gear.tooth_height_flexspline", gear.tooth_height_flexspline, "in proportion to the pitch");
-  designer.set("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "bore radius, rim and tooth height");
-  designer.set("gear.wave_amplitude", gear.wave_amplitude, "the teeth roll in their spaces");
-  designer.scale("ring.mass", radius * face * section / from_section, "circumference, face width, thickness");
-  designer.scale("ring.tension_stiffness", face * rim / pitch, "section over segment length");
+  designer.set("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "bore radius + rim + tooth height");
+  designer.set("gear.wave_amplitude", gear.wave_amplitude, "teeth that roll in their spaces");
+  designer.scale("ring.mass", radius * face * section / from_section,
+                 "in proportion to circumference, face width and thickness");
+  designer.scale("ring.tension_stiffness", face * rim / pitch, "in proportion to section over segment length");
   designer.scale("ring.bending_stiffness", face * std::pow(rim, 3) / pitch,
-                 "face width and thickness cubed over segment length");
-  designer.scale("contact.stiffness", face / teeth, "face width over number of teeth");
+                 "proportional to face width * thickness^3 / segment length");
+  designer.scale("contact.stiffness", face / teeth, "in proportion to face width over number of teeth");
   designer.scale("contact.fit", radius, by_size);
   designer.set("contact.slip_lever",
                0.5 * gear.rim_thickness + radius * (from.contact.slip_lever - 0.5 * from.gear.rim_thickness),
-               "half the rim and half the race");
+               "half the thickness of the rim plus half the thickness of the race");
   designer.scale("mesh.stiffness", face, "in proportion to the face width");
   designer.scale("mesh.tangent_length", pitch, "in proportion to the pitch");
   designer.scale("mesh.engagement_depth", pitch, "in proportion to the pitch");
@@ -204,7 +205,7 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
   designer.scale("cup.wall_stiffness", cube, "cube of the size");
   designer.scale("bearing.pitch_diameter", radius, by_size);
   designer.scale("bearing.ball_diameter", radius, by_size);
-  designer.scale("bearing.race_bending_stiffness", cube * teeth, "the same race, per segment of the rim");
+  designer.scale("bearing.race_bending_stiffness", cube * teeth, "in proportion to number of teeth times size cubed");
   designer.scale(PRELOAD, radius * radius, "square of the size");
   designer.scale("motor.wave_generator_inertia", std::pow(radius, 5), "fifth power of the size");
   designer.scale("output.circular_spline_inertia", std::pow(radius, 5), "fifth power of the size");
@@ -220,7 +221,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // The share of cup friction in the torsion is that of the configured gear.
+  // The designed gear has the configured gear's share of cup friction in the torsion.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which gears have about equal torsion");
   designer.set("life.rated_torque", figures.rated_torque, rule);
@@ -232,7 +233,8 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   designer.set("indicators.lost_motion_torque", 0.04 * figures.rated_torque, "4 % of the rated torque");
 }
 
-/// Fits the three slopes of the cup. Cup, rim and teeth are in series, so the cup gets the missing compliance.
+/// Fits the three slopes of the cup to the torsion of the gear. Cup, rim and teeth are in series, so the cup gets the
+/// compliance that rim and teeth lack.
 void fitTorsion(const GearFigures& figures, Designer& designer)
 {
   const std::vector<double> torques{ figures.breakpoints[0], figures.breakpoints[1], figures.repeated_peak_torque };
@@ -249,7 +251,7 @@ void fitTorsion(const GearFigures& figures, Designer& designer)
     {
       if (!rows[i].status.ok())
       {
-        throw ParameterError("no equilibrium under " + numberText(torques[i]) +
+        throw ParameterError("there is no equilibrium under " + numberText(torques[i]) +
                              " N.m: " + explanationOf(rows[i].status));
       }
       const double wanted = figures.torsion(torques[i]);
@@ -267,14 +269,14 @@ void fitTorsion(const GearFigures& figures, Designer& designer)
     {
       return;
     }
-    designer.set("cup.torsion_stiffness", std::move(slopes), "fitted: the whole gear twists as in the catalogue");
+    designer.set("cup.torsion_stiffness", std::move(slopes), "fitted to the torsion of the gear in the catalogue");
   }
   throw ParameterError(
-      "the cup cannot be fitted to the torsion of the catalogue, because rim and teeth alone twist more");
+      "the cup cannot be fitted to the torsion of the catalogue, because rim and teeth alone twist more than that");
 }
 
-/// Fits a parameter > 0 until the torque that increases with it has the wanted value. `torque`: function of the
-/// parameters [N.m].
+/// Fits a parameter > 0 so that a torque has the value `wanted`. `torque`: function of the parameters [N.m] that
+/// increases with the fitted parameter.
 template <class Torque>
 void fitTorque(const std::string& key, double start, double wanted, const std::string& rule, Torque&& torque,
                Designer& designer)
@@ -290,7 +292,7 @@ void fitTorque(const std::string& key, double start, double wanted, const std::s
   if (least > wanted)
   {
     throw ParameterError("gear: " + key + " cannot be fitted to " + numberText(wanted) +
-                         " N.m, because the gear's other friction alone is " + roundedText(least, 4) + " N.m");
+                         " N.m, because the other friction of the gear alone is " + roundedText(least, 4) + " N.m");
   }
   std::uintmax_t trials = 60;
   const auto [low, high] = boost::math::tools::bracket_and_solve_root(
@@ -313,7 +315,7 @@ double noLoadTorque(const Parameters& parameters)
   const LossRow row = analyseLosses(parameters, { CATALOGUE_SPEED }, { 0.0 }, FRICTION_POSITIONS, nullptr).front();
   if (!row.status.ok())
   {
-    throw ParameterError("no equilibrium without load: " + explanationOf(row.status));
+    throw ParameterError("there is no equilibrium without load: " + explanationOf(row.status));
   }
   return row.loss.gear();
 }
@@ -388,8 +390,8 @@ GearDesign designGear(const ParameterMap& configured, const GearRequest& request
   if (const GearFigures known_figures = gearFigures(known); !has_friction && known_figures.starting_torque > 0.0)
   {
     const Parameters fitted = parseParameters(designGear(configured, known, known_figures).map);
-    designer.set(PRELOAD, fitted.bearing.race_preload, "as for ratio 100, which has the same bearing");
-    designer.set(VISCOSITY, fitted.bearing.viscosity, "as for ratio 100, which has the same bearing");
+    designer.set(PRELOAD, fitted.bearing.race_preload, "the value for ratio 100, because the bearing is the same");
+    designer.set(VISCOSITY, fitted.bearing.viscosity, "the value for ratio 100, because the bearing is the same");
   }
   if (figures.starting_torque > 0.0)
   {

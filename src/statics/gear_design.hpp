@@ -11,12 +11,12 @@
 
 namespace hjt
 {
-/// Conditions of the friction torques in a catalogue.
+/// Conditions under which a catalogue states its friction torques.
 constexpr double CATALOGUE_SPEED = 2000.0 * PI / 30.0;  // [rad/s]
 constexpr double CATALOGUE_TEMPERATURE = 20.0;          // [degC]
 constexpr int FRICTION_POSITIONS = 8;                   // positions in a tooth pitch over which friction is averaged
 
-/// Requested gear. Values that are not given follow from the size.
+/// Requested gear. A value that the request lacks follows from the size.
 struct GearRequest
 {
   double size{ 25.0 };  ///< size in a catalogue's numbers: 25 has the configured dimensions [-]
@@ -24,7 +24,7 @@ struct GearRequest
   std::optional<double> bore_radius;    ///< bore radius of the flexspline [m]
   std::optional<double> rim_thickness;  ///< [m]
   std::optional<double> face_width;     ///< face width of the teeth [m]
-  // Figures of the gear's own catalogue; empty: those of the family.
+  // Figures of the gear's own catalogue; empty: figures of the family HFUS/CSF.
   std::vector<double> stiffness;          ///< K1, K2, K3 of the whole gear [N.m/rad]
   std::vector<double> breakpoints;        ///< T1, T2 [N.m]
   std::vector<double> ratings;            ///< rated, average, repeated peak, momentary peak torque [N.m]
@@ -43,13 +43,13 @@ struct GearFigures
   double momentary_peak_torque{};       ///< [N.m]
   double starting_torque{};             ///< starting torque at the wave generator at 20 degC [N.m]
   double no_load_torque{};              ///< no-load torque at the wave generator at 2000 rpm and 20 degC [N.m]
-  std::string source;                   ///< source of the figures that were not given
+  std::string source;                   ///< source of the figures that the request lacks
 
-  double torsion(double torque) const;  ///< torsion [rad] under a torque >= 0 [N.m]
+  double torsion(double torque) const;  ///< torsion [rad] by the catalogue under a torque >= 0 [N.m]
 };
 
-/// Figures of the request, completed by those of the catalogue of the family HFUS/CSF. A ratio that the catalogue lacks
-/// is scaled from the next ratio of that size, and a size that it lacks from size 25.
+/// Figures of the request, completed by the catalogue of the family HFUS/CSF. If the catalogue lacks the ratio, the
+/// function scales the figures of the closest ratio of the size. If it lacks the size, it scales those of size 25.
 /// @throws ParameterError if a given figure is impossible for a gear.
 GearFigures gearFigures(const GearRequest& request);
 
@@ -60,8 +60,8 @@ struct DesignedParameter
   std::string rule;
 };
 
-/// A gear of the family. Rules of similarity scale every configured parameter that depends on size, teeth or rim. Then
-/// the cup's slopes, the race preload and the viscosity are fitted to the figures.
+/// A designed gear. Rules of similarity scale every configured parameter that depends on size, teeth or rim. The cup's
+/// slopes, the race preload and the viscosity are then fitted to the figures of the catalogue.
 struct GearDesign
 {
   ParameterMap map;  ///< complete configuration

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// The effect of a fault that an analysis lacks; nullptr if the analysis has at least a part of the effect.
+/// What an analysis lacks, so that a fault has no effect in it; null if the analysis contains a part of the effect.
 const char* missingFor(const Fault& fault, const Parameters& parameters, Analysis analysis)
 {
   const unsigned changed = partsOf(fault, parameters.gear);
@@ -59,7 +59,7 @@ std::string shortNumber(double value)
   return roundedText(value, 5);
 }
 
-/// The drive to be checked, without intended faults and errors.
+/// The drive to be checked, without the configured faults and errors of manufacture.
 Parameters soundGear(const Parameters& parameters)
 {
   Parameters sound = withoutHeat(withoutWeight(withoutErrors(parameters)));
@@ -68,7 +68,7 @@ Parameters soundGear(const Parameters& parameters)
   return sound;
 }
 
-/// Adds a warning if a value differs from the expected one by more than a factor.
+/// Adds a warning if a value differs from the expected value by more than a factor.
 class Nearness
 {
 public:
@@ -87,7 +87,7 @@ public:
 private:
   std::vector<std::string>& warnings_;
 };
-/// Text of the jam of a sound gear with this fit.
+/// Message about the jam of a sound gear with this fit; empty if the gear does not jam.
 std::string jamText(const Parameters& sound, const FitCheck& fit)
 {
   if (!fit.jams())
@@ -125,17 +125,17 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   std::vector<std::string> warnings;
   Nearness near(warnings);
   near.check("gear.wave_amplitude", gear.wave_amplitude, "m", fittingWaveAmplitude(gear), 1.03,
-             "then the teeth roll in their spaces");
+             "the value at which the teeth roll in their spaces");
   near.check("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "m", fittingTipRadius(gear),
              1.0 + 0.25 * gear.tooth_height_flexspline / fittingTipRadius(gear),
-             "by bore radius, rim and tooth height; then the teeth engage to the depth of the wave");
+             "the sum of bore radius, rim and tooth height, at which the teeth engage to the depth of the wave");
   near.check("ring.bending_stiffness", sound.ring.bending_stiffness, "N.m/rad", rimBendingStiffness(sound), 2.0,
-             "by gear.rim_thickness, life.face_width and the number of teeth");
+             "the value that follows from gear.rim_thickness, life.face_width and the number of teeth");
   near.check("ring.tension_stiffness", sound.ring.tension_stiffness, "N/m", 2.5 * rimTensionStiffness(sound), 2.5,
-             "2.5 times the section of the rim under the teeth, because the teeth carry a part");
+             "2.5 times the stiffness of the rim under the teeth, because the teeth carry a part of the tension");
   if (!fit.status.ok())
   {
-    warnings.push_back("no equilibrium without load: " + explanationOf(fit.status));
+    warnings.push_back("there is no equilibrium without load: " + explanationOf(fit.status));
     return warnings;
   }
   if (fit.teeth_loaded == 0)
@@ -151,7 +151,7 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
   {
     warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
                        " [N.m]: " + shortNumber(row.gear_efficiency) +
-                       " [-], outside the 0.55 ... 0.92 of such gears; check bearing.race_preload, "
+                       " [-], but harmonic drives have 0.55 ... 0.92; check bearing.race_preload, "
                        "bearing.viscosity, mesh.friction_kinetic and life.rated_torque");
   }
   return warnings;

@@ -12,8 +12,9 @@
 
 namespace hjt
 {
-/// Amplitude w0 at which the teeth roll in their spaces without jamming [m]. A tooth at mid-height z above the bore
-/// moves by w0 (1/2 - 3 z / (2 r0)) along the circumference, and the pitch of the spaces requires (r0 + z) / (N + 2).
+/// Amplitude w0 at which the teeth roll in their spaces without jamming [m]. At the mid-height z of the teeth above the
+/// bore of radius r0, a tooth moves by w0 (1/2 - 3 z / (2 r0)) along the circumference. This must equal (r0 + z) / (N +
+/// 2), the difference of the pitches for N teeth.
 inline double fittingWaveAmplitude(const GearParameters& gear) noexcept
 {
   const double radius = gear.flexspline_inner_radius;
@@ -33,14 +34,14 @@ inline double segmentLength(const GearParameters& gear) noexcept
   return 2.0 * gear.flexspline_inner_radius * std::sin(PI / gear.teeth_flexspline);
 }
 
-/// Axial stiffness E b t / p of the rim between two teeth that carry nothing [N/m].
+/// Axial stiffness E b t / p of the rim between two teeth, without the stiffness of the teeth themselves [N/m].
 inline double rimTensionStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
   return parameters.life.elastic_modulus * parameters.life.face_width * gear.rim_thickness / segmentLength(gear);
 }
 
-/// Bending stiffness E b t^3 / (12 p (1 - c)) of the rim between rigid teeth, an upper bound [N.m/rad].
+/// Upper bound of the rim's bending stiffness between two teeth, E b t^3 / (12 p (1 - c)) for rigid teeth [N.m/rad].
 inline double rimBendingStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
@@ -48,7 +49,7 @@ inline double rimBendingStiffness(const Parameters& parameters) noexcept
          (12.0 * segmentLength(gear) * (1.0 - parameters.stress.tooth_base));
 }
 
-/// Extent of the joint in an analysis.
+/// Part of the joint that an analysis contains.
 enum class Analysis
 {
   INSERTION,     ///< ring on the wave generator, without circular spline and friction
@@ -56,14 +57,14 @@ enum class Analysis
   WITH_FRICTION  ///< the whole joint
 };
 
-/// Checks that all faults can act in an analysis, which has no time for later onsets.
+/// Checks that all faults can act in an analysis. An analysis has no time, so every onset must be 0.
 /// @throws ParameterError for a configured fault that cannot act.
 void requireFaultsAct(const Parameters& parameters, Analysis analysis);
 
-/// Reason why the sound gear without errors cannot turn: its teeth jam without load. Empty if they do not.
+/// Message if the teeth of the sound gear jam without load, so that the gear cannot turn; empty if they do not jam.
 std::string jamOf(const Parameters& parameters);
 
-/// Warnings of inconsistent values: key, value and expected value. A jam is the only warning. The function solves a few
-/// equilibria in about 10 ms.
+/// Warnings about inconsistent parameters, with key, value and expected value. If the teeth jam, the jam is the only
+/// warning. The function solves a few equilibria in about 10 ms.
 std::vector<std::string> gearWarnings(const Parameters& parameters);
 }  // namespace hjt

@@ -7,15 +7,15 @@
 
 namespace hjt
 {
-/// Expected error of a ring model without inertia near a motor speed [rad/s] and a torque at the output [N.m]: root
-/// mean square error of the flank forces over the loaded teeth [N].
+/// Expected error of a ring model without inertia at a motor speed [rad/s] and a torque at the output [N.m]: rms error
+/// of the flank forces over the loaded teeth [N].
 ///
 ///   E = a m w^2 r0 sqrt(1 + (T / (p r0^3))^4)
-/// where  m  mass of the toothed rim, r0 its inner radius, w motor speed, T torque
-///        a, p  fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
+/// where  m, r0  mass [kg] and inner radius [m] of the toothed rim;  w  motor speed [rad/s];  T  torque [N.m]
+///        a, p   fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
 ///
-/// At speeds at which the tooth engagement excites a mode of the ring the error is several times larger, at most speeds
-/// smaller.
+/// At speeds at which the engagement of the teeth excites a mode of the ring, the error is several times larger than E.
+/// At most speeds it is smaller than E.
 inline double expectedMeshForceError(const RingParameters& ring, const GearParameters& gear, double motor_speed,
                                      double torque) noexcept
 {

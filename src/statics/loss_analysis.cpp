@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Friction of the joint on its way through one tooth pitch.
+/// Computes the friction of the joint over one tooth pitch of the wave generator.
 class LossMeter
 {
 public:
@@ -26,10 +26,10 @@ public:
   PitchWalk& walk() { return walk_; }
   const SolveStatus& status() const { return walk_.status(); }
 
-  /// Torque of each friction at this position, reduced to the motor [N.m].
+  /// Torque of each kind of friction at the current position, as a torque at the motor [N.m].
   LossShares shares(double speed, double velocity_ratio)
   {
-    const Eigen::Vector2d rates(1.0, velocity_ratio);  // speeds of motor and output over the motor's speed
+    const Eigen::Vector2d rates(1.0, velocity_ratio);  // speeds of motor and output, over the speed of the motor
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
     const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
@@ -60,7 +60,7 @@ private:
   double temperature_;
 };
 
-/// Largest friction of the gear over a tooth pitch, at the wave generator as motion begins [N.m].
+/// Largest friction of the gear over a tooth pitch at the start of motion, as a torque at the wave generator [N.m].
 double breakaway(LossMeter& meter, double load)
 {
   double largest = 0.0;
@@ -128,7 +128,7 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
   LossMeter meter(parameters, positions);
   Breakaway result;
   result.starting = breakaway(meter, 0.0);
-  // The load that the friction just holds. Friction grows slowly with the load, so that the iteration converges.
+  // Largest load that the friction holds. The iteration converges, because friction grows slowly with the load.
   const double ratio = nominalRatio(parameters.gear);
   double load = ratio * result.starting;
   double change = load;

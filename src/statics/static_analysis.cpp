@@ -55,7 +55,7 @@ ToothStress stressOf(const RingEquilibrium& ring, const Parameters& parameters)
   return stress;
 }
 
-/// Force on each ball with single balls [N].
+/// Force on each ball [N]; empty if the model has no single balls.
 std::vector<double> ballForces(const RingEquilibrium& ring, const Parameters& parameters)
 {
   std::vector<double> forces;

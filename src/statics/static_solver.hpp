@@ -10,17 +10,17 @@
 
 namespace hjt
 {
-/// Statics are solved to rounding, whatever the tolerance of the running twin.
+/// Parameters of the solver for statics, which are solved to rounding errors with any tolerance of the running twin.
 inline SolverParameters staticSolver(SolverParameters parameters)
 {
-  constexpr double STATIC_TOLERANCE = 5e-7;  // [N]; the tension stiffness times the rounding of a coordinate is 2e-8 N
+  constexpr double STATIC_TOLERANCE = 5e-7;  // [N]; rounding errors of a coordinate times tension stiffness are 2e-8 N
   parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
   return parameters;
 }
 
-/// The joint with the faults of its start, moved quasi-statically through one tooth pitch of the wave generator at
-/// constant load. With equal teeth this represents a whole turn: what a tooth goes through in a turn, all teeth
-/// together go through in a pitch.
+/// Moves the joint, with the faults that it starts with, quasi-statically through one tooth pitch of the wave generator
+/// at constant load. With equal teeth this represents a whole turn, because all teeth together go through the states of
+/// one tooth in a turn.
 class PitchWalk
 {
 public:
@@ -38,7 +38,8 @@ public:
   {
   }
 
-  /// Calls `visit(output speed over motor speed)` with the ring in equilibrium at each position. It stops on failure.
+  /// Calls `visit(output speed over motor speed)` at each position in equilibrium; stops at a position without
+  /// equilibrium.
   template <class Visit>
   void under(double load, Visit&& visit)
   {

@@ -17,19 +17,19 @@
 
 namespace hjt
 {
-/// Torsion of the gear under load with the wave generator locked and without friction. The curve is odd and linear
-/// between solutions of the ring at multiples of cup.torsion_breakpoints; its last slope continues beyond.
+/// Torsion of the gear under load with the wave generator locked and without friction. The curve is odd, and linear
+/// between solutions of the ring at multiples of cup.torsion_breakpoints. Beyond them its last slope continues.
 class TorsionCurve
 {
 public:
   struct Piece
   {
-    double torque{};     ///< torque at the piece's beginning [N.m]
-    double torsion{};    ///< torsion at the piece's beginning [rad]
+    double torque{};     ///< torque at the start of the piece [N.m]
+    double torsion{};    ///< torsion at the start of the piece [rad]
     double stiffness{};  ///< [N.m/rad]
   };
 
-  /// Solves the ring at about ten torques. @throws ParameterError if it has no equilibrium at one of them.
+  /// Solves the ring at about ten torques. @throws ParameterError if the ring has no equilibrium at one of the torques.
   explicit TorsionCurve(const Parameters& parameters)
   {
     for (const StiffnessRow& row : analyseStiffness(parameters, 0.0, torquesOf(parameters.cup)))
@@ -49,10 +49,9 @@ public:
     pieces_.pop_back();
   }
 
-  const std::vector<Piece>& pieces() const noexcept { return pieces_; }  ///< for torques >= 0, ascending
+  const std::vector<Piece>& pieces() const noexcept { return pieces_; }  ///< pieces for torques >= 0, ascending
 
-  /// index of the piece that contains a torsion [rad]
-  std::size_t pieceAt(double torsion) const noexcept
+  std::size_t pieceAt(double torsion) const noexcept  ///< index of the piece that contains a torsion [rad]
   {
     std::size_t piece = 0;
     while (piece + 1 < pieces_.size() && pieces_[piece + 1].torsion < std::abs(torsion))
@@ -62,15 +61,13 @@ public:
     return piece;
   }
 
-  /// torque for a torsion [N.m]
-  double torque(double torsion) const noexcept
+  double torque(double torsion) const noexcept  ///< torque [N.m] for a torsion [rad]
   {
     const Piece& piece = pieces_[pieceAt(torsion)];
     return std::copysign(piece.torque + piece.stiffness * (std::abs(torsion) - piece.torsion), torsion);
   }
 
-  /// torsion for a torque [rad]
-  double torsion(double torque) const noexcept
+  double torsion(double torque) const noexcept  ///< torsion [rad] for a torque [N.m]
   {
     std::size_t number = 0;
     while (number + 1 < pieces_.size() && pieces_[number + 1].torque < std::abs(torque))
@@ -82,7 +79,7 @@ public:
   }
 
 private:
-  /// Torques within the first slope of the cup and at its end, to the end of the second slope, and beyond.
+  /// Torques at which the ring is solved: on the first slope of the cup, on the second, and beyond.
   static std::vector<double> torquesOf(const CupParameters& cup)
   {
     std::vector<double> torques{ 0.0 };
@@ -102,7 +99,7 @@ private:
     }
     if (torques.size() == 1)
     {
-      torques.push_back(1.0);  // the curve has only the last slope
+      torques.push_back(1.0);  // any torque, because the curve has only one slope
     }
     return torques;
   }
@@ -129,7 +126,7 @@ public:
   /// Puts the joint at rest without load.
   void reset() noexcept { state_ = CupFriction::State(); }
 
-  /// @returns the torsion [rad] under the next load [N.m], to which the load moved without a reversal.
+  /// Applies the next load [N.m], which the load reaches without a reversal. @returns the torsion [rad].
   double to(double torque)
   {
     if (!friction_.hasState())

@@ -19,7 +19,7 @@ void requirePositive(const char* name, double value)
   }
 }
 
-/// Angle at which the polyline, in ascending order of torque, has a torque [rad].
+/// Angle at which a polyline, with points in ascending order of torque, has the torque `torque` [rad].
 double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
 {
   for (std::size_t i = 1; i < sweep.size(); ++i)
@@ -33,8 +33,8 @@ double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
   }
   return sweep.back().output_angle;
 }
-/// Adds the friction of the cup's springs and sliders, from rest to the first point of the sweep and along the sweep.
-/// `rotations`: rotation of the rim at each angle [rad], with its derivative by the output's angle [-].
+/// Adds the friction of the cup's springs and sliders, from rest to the first point of the loop and along the loop.
+/// `rotations`: rotation of the rim at each angle [rad], and its derivative by the output angle [-].
 void addCupFriction(const CupFriction& friction, double unloaded_rotation,
                     const std::vector<Eigen::Vector2d>& rotations, std::vector<TorsionPoint>& up,
                     std::vector<TorsionPoint>& down)

@@ -12,8 +12,8 @@
 
 namespace hjt
 {
-/// Visits every entry of a tangent over all coordinates as (row, column, value), in an order that does not depend on
-/// the values. The entries of the cup, a dense matrix of rank one, are excluded.
+/// Calls `visit(row, column, value)` for every entry of a tangent over all coordinates, in an order that does not
+/// depend on the values. It excludes the entries of the cup, which form a dense matrix of rank one.
 template <class Visitor>
 void visitEntries(const RingTangent& tangent, Visitor&& visit)
 {
@@ -52,11 +52,11 @@ void visitEntries(const RingTangent& tangent, Visitor&& visit)
   visit(output, output, tangent.output_stiffness);
 }
 
-/// Amplitude of the wave over time, with constant speed of growth. A step must end where the speed changes.
+/// Amplitude of the wave, which grows at constant speed. A step of the integration must end where this speed changes.
 struct WaveGrowth
 {
   double begin{};      ///< time of the beginning [s]
-  double amplitude{};  ///< at `begin` [m]
+  double amplitude{};  ///< amplitude at `begin` [m]
   double speed{};      ///< speed of growth [m/s]
 
   double at(double time) const noexcept { return amplitude + speed * (time - begin); }  ///< amplitude at a time [m]
@@ -75,7 +75,7 @@ struct RingDrive
 /// Powers at one instant [W].
 struct RingPower
 {
-  double supplied{};    ///< power of motor or drive, load, and growth of the wave generator
+  double supplied{};    ///< power supplied by the motor or by prescribed motion, the load, and the growth of the wave
   double dissipated{};  ///< power dissipated by dashpots and viscous friction
 };
 
@@ -120,17 +120,17 @@ public:
   double kineticEnergy(const Eigen::VectorXd& v) const noexcept { return 0.5 * v.cwiseAbs2().dot(mass_); }
   const RingPower& power() const noexcept { return power_; }
 
-  /// Minus the derivative of the force at the last evaluated state: K + `by_speed` C, with K by the coordinates and C
-  /// by their speeds; `by_speed` [1/s]. It omits the change of the dashpots' directions and the unsymmetric part of the
-  /// polar contact, which only slows the convergence of an iteration.
+  /// Minus the derivative of the force at the last evaluated state: K + `by_speed` C, with K the derivative by the
+  /// coordinates, C that by the speeds, and `by_speed` [1/s]. The function omits the change of the dashpots' directions
+  /// and the unsymmetric part of the polar contact. This only slows the convergence of an iteration.
   void tangent(double by_speed, RingTangent& tangent) const noexcept;
 
-  /// Right-hand side for any solver: derivative of the state. Both arrays have `states()` values.
+  /// Right-hand side for any solver: derivative of the state. `state` and `derivative` have `states()` values each.
   void rates(const double* state, double time, double* derivative) noexcept;
 
   /// Derivative of the right-hand side at the last evaluated state. The cup couples all teeth by a matrix of rank one.
-  /// Without the cup the pattern is constant, with about 20 entries for a tooth, and the missing part is - M^-1 k d d^T
-  /// with `cup_stiffness` and `cup_direction` of `tangent`.
+  /// With LEFT_OUT the pattern is constant, with about 20 entries for a tooth, and the missing part is - M^-1 k d d^T,
+  /// where k and d are `cup_stiffness` and `cup_direction` of `tangent`.
   enum class Cup
   {
     DENSE,
@@ -146,7 +146,7 @@ private:
   RingShape shape_;
   DrivePosition position_;
   RingForces forces_;
-  Eigen::VectorXd growth_;  // N, speed of the wave generator's surface along each tooth's normal by its growth [m/s]
+  Eigen::VectorXd growth_;  // N speeds at which the growing wave moves its surface along each tooth's normal [m/s]
   Eigen::VectorXd force_;
   RingPower power_;
   Eigen::VectorXd q_;  // working memory

@@ -22,7 +22,7 @@ long stepsIn(double duration, double step)
   return std::max(1L, std::lround(std::ceil(duration / step - 1e-6)));
 }
 
-/// Collects rows and the sums of the window.
+/// Collects the rows of a transient, and the statistics of the largest force over the window.
 class TransientRecord
 {
 public:
@@ -135,7 +135,8 @@ public:
     loaded_ += quasi_static != 0.0 ? 1 : 0;
   }
 
-  /// `among_loaded`: for quantities that are zero on most teeth, only values other than zero count.
+  /// Error over all values. `among_loaded`: only values other than zero count, for quantities that are zero on most
+  /// teeth.
   DynamicError error(bool among_loaded = false) const noexcept
   {
     const double n = static_cast<double>(among_loaded ? loaded_ : count_);
@@ -160,8 +161,8 @@ class Comparison
 public:
   explicit Comparison(const RingModel& model) : model_(model), rest_(model.rest.points()) {}
 
-  /// `same`: equilibrium at the angles of the dynamic ring; `balanced`: equilibrium under the load at the same motor
-  /// angle.
+  /// Adds a comparison. `same`: equilibrium at both angles of the dynamic ring; `balanced`: equilibrium under the load
+  /// at the motor angle of the dynamic ring.
   void add(const DynamicRing& ring, double time, const RingEquilibrium& same, const RingEquilibrium& balanced,
            QuasiStaticResult& result)
   {
@@ -227,7 +228,7 @@ RingDrive driveOf(const Parameters& parameters, const QuasiStaticSetup& setup)
   return drive;
 }
 
-/// Solves both equilibria at the dynamic ring's position: at the same angles, and under the same load.
+/// Solves two equilibria for a dynamic ring: `same` at its two angles, `balanced` under the load at its motor angle.
 SolveStatus follow(const DrivePosition& position, double load, RingEquilibrium& same, RingEquilibrium& balanced)
 {
   const SolveStatus status = same.moveTo(position);
@@ -288,7 +289,7 @@ QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStat
       comparison.add(ring, motion.time, same, balanced, result);
       due += setup.compare_period;
     }
-    else  // an equilibrium can follow less than a turn, so both are moved along
+    else  // before the comparisons the equilibria follow every half turn, because they cannot follow a whole turn
     {
       due = std::min(setup.settle_time, due + half_turn_time);
     }

@@ -18,14 +18,14 @@ struct TransientSetup
   double step{ 5e-6 };           ///< length of a step [s]
   double duration{ 0.05 };       ///< length of the run [s]
   double growth_time{ 5e-3 };    ///< time in which the amplitude grows [s]
-  double window_start{ 0.03 };   ///< begin of the window for statistics of the largest force; it lasts to the end [s]
+  double window_start{ 0.03 };   ///< start of the window for statistics of the largest force; the run ends it [s]
   double sample_period{ 5e-5 };  ///< time between two rows [s]
-  /// largest error of a tooth's position in one step, whose length is then at most `step`; 0: all steps have this
-  /// length [m]
+  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`;
+  /// 0: all steps have the length `step`
   double tolerance{};
 };
 
-/// Largest force of the wave generator on a tooth, and the energies.
+/// Largest force of the wave generator on a tooth and energies of the ring, at one instant.
 struct TransientRow
 {
   double time{};          ///< [s]
@@ -42,7 +42,7 @@ struct TransientRow
 struct TransientResult
 {
   bool finished{};
-  double stopped_at{};  ///< time of the failure [s]
+  double stopped_at{};  ///< time at which the integration failed [s]
   std::vector<TransientRow> rows;
   double window_lowest{};   ///< least value of the largest force over all steps of the window [N]
   double window_highest{};  ///< largest value over the window [N]
@@ -57,11 +57,11 @@ struct TransientResult
 TransientResult analyseTransient(const Parameters& parameters, const TransientSetup& setup,
                                  const std::function<void(double)>& progress);
 
-/// The working drive with a dynamic ring, compared with the ring in equilibrium. The wave generator turns at a constant
-/// speed, and the circular spline is a free body under a constant load. Both sides neglect dry friction.
+/// Comparison of a dynamic ring at work with the ring in equilibrium. The wave generator turns at a constant speed, and
+/// the circular spline is a free body under a constant load. Both rings are without dry friction.
 ///
-/// The run starts from the travelling equilibrium, with positions and speeds of the ring in equilibrium. The remaining
-/// start transient decays in `settle_time`.
+/// The run starts with the positions and speeds of the ring in equilibrium (travelInEquilibrium). The transient that
+/// remains decays in `settle_time`.
 struct QuasiStaticSetup
 {
   RingMethod method{ RingMethod::TR_BDF2 };
@@ -71,20 +71,20 @@ struct QuasiStaticSetup
   double settle_time{ 5e-3 };      ///< time before the first comparison [s]
   double duration{ 5e-3 };         ///< duration of the comparison [s]
   double compare_period{ 37e-6 };  ///< time between two comparisons [s]
-  /// largest error of a tooth's position in one step, whose length is then at most `step`; 0: all steps have this
-  /// length [m]
+  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`;
+  /// 0: all steps have the length `step`
   double tolerance{};
 };
 
-/// Error of a quantity relative to its quasi-static value.
+/// Error of a quantity of the ring in equilibrium, compared with the dynamic ring.
 struct DynamicError
 {
-  double size{};  ///< root mean square of the quasi-static quantity, the reference of relative errors
+  double size{};  ///< root mean square of the quantity in equilibrium, to which relative errors refer
   double rms{};
   double max{};
 };
 
-/// Forces on each tooth in the last comparison, for both rings.
+/// Forces on each tooth in the last comparison, for the dynamic ring and the ring in equilibrium.
 struct ToothForceComparison
 {
   double time{};                             ///< [s]
@@ -96,9 +96,9 @@ struct ToothForceComparison
 
 struct QuasiStaticRow
 {
-  double time{};                  ///< [s]
-  double torsion_dynamic{};       ///< output angle minus wave generator angle over the ratio [rad]
-  double torsion_quasi_static{};  ///< torsion of the equilibrium under the same load at the same motor angle [rad]
+  double time{};                           ///< [s]
+  double torsion_dynamic{};                ///< output angle minus wave generator angle over the ratio [rad]
+  double torsion_quasi_static{};           ///< torsion of the equilibrium under this load at this motor angle [rad]
   double wave_generator_torque_dynamic{};  ///< torque on the wave generator, dynamic ring [N.m]
   double wave_generator_torque_quasi_static{};
   double contact_error_rms{};  ///< rms error of the wave generator's forces over the teeth [N]
@@ -112,16 +112,16 @@ enum class QuasiStaticOutcome
   NO_EQUILIBRIUM
 };
 
-/// Forces, torques and positions are compared with the ring in equilibrium at the same two angles, as the twin computes
-/// them, and the torsion with that of the equilibrium under the same load.
+/// Differences between the dynamic ring and equilibria. Forces, torques and positions are compared with the equilibrium
+/// at the two angles of the dynamic ring, as in the twin. The torsion is compared with the equilibrium under the load.
 struct QuasiStaticResult
 {
   QuasiStaticOutcome outcome{ QuasiStaticOutcome::NO_EQUILIBRIUM };
   SolveStatus status;                  ///< status of the last equilibrium
-  double stopped_at{};                 ///< time of the failure [s]
-  DynamicError contact_force;          ///< of each tooth [N]
-  DynamicError mesh_force;             ///< of each tooth; the size is that of the loaded teeth [N]
-  DynamicError position;               ///< of each tooth point; the size is the displacement from rest [m]
+  double stopped_at{};                 ///< time at which the integration or an equilibrium failed [s]
+  DynamicError contact_force;          ///< force of the wave generator on each tooth [N]
+  DynamicError mesh_force;             ///< mesh force of each tooth; `size` is over the loaded teeth [N]
+  DynamicError position;               ///< position of each tooth point; `size` is the displacement from rest [m]
   DynamicError wave_generator_torque;  ///< [N.m]
   DynamicError output_torque;          ///< [N.m]
   DynamicError torsion;                ///< [rad]

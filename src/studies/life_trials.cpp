@@ -18,10 +18,9 @@ namespace
 {
 using namespace assessment_errors;
 
-/// Simulated assessments of one drive with the errors of assessment_errors and those below. The drive's errors are
-/// constant, those of one estimate are small. Of several found kinds, the cause is the one that exceeds its detection
-/// limit most. If the cause is wrong, the wear counts as that of the wave generator, which changes the indicators in a
-/// similar way.
+/// Simulates assessments of one drive with the errors of assessment_errors and of this class. Most errors are constant
+/// for a drive; a small error changes from estimate to estimate. The cause is the kind of wear that exceeds its
+/// detection limit most. A wrong cause is wave generator wear, which changes the indicators in a similar way.
 class SimulatedAssessments
 {
 public:
@@ -76,7 +75,7 @@ private:
   static constexpr std::array<double, 3> ESTIMATE_MEAN{ assessment_counts::TOOTH_WEAR_ESTIMATE,
                                                         assessment_counts::INTERFACE_WEAR_ESTIMATE,
                                                         assessment_counts::LUBRICANT_DEGRADATION_ESTIMATE };
-  static constexpr double ESTIMATE_NOISE = 0.1;             // of the logarithm, between two assessments; an assumption
+  static constexpr double ESTIMATE_NOISE = 0.1;             // spread of an estimate's logarithm (assumption)
   static constexpr double STATED_CONFIDENCE = RIGHT_CAUSE;  // confidence of a calibrated assessment
 
   FaultScaleParameters scale_;
@@ -84,10 +83,10 @@ private:
   boost::random::normal_distribution<double> normal_;
   std::array<double, 3> found_from_;  // severities of the detection limits
   std::array<double, 3> estimate_factor_;
-  std::array<double, 3> mistaken_;  // uniform in 0 ... 1
+  std::array<double, 3> mistaken_;  // uniform random numbers in 0 ... 1; small: the cause is right
 };
 
-/// Simulated readings of one drive's wear with the errors of assessment_errors.
+/// Simulates readings of one drive's wear with the errors of assessment_errors.
 class SimulatedReadings
 {
 public:
@@ -137,7 +136,7 @@ private:
   double of_flank_;
 };
 
-/// Forecasts of one life from its use and its assessments.
+/// Forecasts the remaining life of one drive from its use, its assessments and its readings.
 class Watch
 {
 public:
@@ -154,7 +153,7 @@ public:
   LifeForecast forecast(double hours, double remaining, const DriveAge& age)
   {
     constexpr int STRETCHES = 400;
-    constexpr double HORIZON = 3.0;  // in present ages; later use continues as in the last interval
+    constexpr double HORIZON = 3.0;  // length of the tabulated future use, over the age of the drive
     const Usage so_far = use_.until(hours);
     const FutureLoad ahead = use_.from(hours, HORIZON * (hours + options_.every), STRETCHES);
     const Assessment assessment = assessments_.of(age);

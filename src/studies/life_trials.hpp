@@ -18,14 +18,14 @@ struct LifeTrialOptions
   bool grease_changes{};
 };
 
-/// A forecast at one assessment, with the true life.
+/// Forecasts at the time of one assessment, with the true remaining life.
 struct LifeForecast
 {
   double hours{};      ///< hours of use at the forecast
   double remaining{};  ///< true remaining life [h]
   Assessment assessment;
-  RemainingHours forecast;  ///< forecast from the assessment
-  RemainingHours read;      ///< forecast from all wear readings so far
+  RemainingHours forecast;  ///< forecast from the use and the assessment
+  RemainingHours read;      ///< forecast from the use and all wear readings so far
   RemainingHours prior;     ///< forecast from the use alone
 
   /// Whether the interval from the 10 % to the 90 % quantile of `read` contains the truth.
@@ -48,12 +48,12 @@ struct Coverage
   double share() const { return forecasts > 0 ? static_cast<double>(held) / forecasts : 0.0; }
 };
 
-/// Coverage over all forecasts after a share `from` of each life.
+/// Coverage over the forecasts that were made after the share `from` of each life.
 Coverage coverage(const std::vector<LifeTrial>& trials, double from);
 
-/// Simulates drives drawn from the spread of the parameters until the end of their lives, and forecasts their remaining
-/// life. The forecasts use the drive's use and assessments with errors, but neither its variation nor its true wear.
-/// `longest`: lives that have not ended by then are excluded [h].
+/// Draws drives at random, simulates each to the end of its life, and forecasts its remaining life. The forecasts know
+/// the drive's use, and assessments and readings with errors, but neither its UnitVariation nor its true wear.
+/// `longest`: lives that last longer are excluded [h].
 std::vector<LifeTrial> runLifeTrials(const Parameters& parameters, const DriveAgeing& ageing,
                                      const LifeTrialOptions& options, double longest,
                                      const std::function<void(double)>& progress);

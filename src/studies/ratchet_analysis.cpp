@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// Moves the output; the amplitude follows to its balance.
+  /// Moves the output to an angle and solves for the wave amplitude in balance.
   SolveStatus moveOutput(double output_angle)
   {
     DrivePosition target = ring_.position();
@@ -35,7 +35,7 @@ public:
 
   int snaps() const { return snaps_; }
 
-  /// Force of the ring on each lobe minus that without load [N].
+  /// Inward force of the ring on each lobe, minus this force without load [N].
   double lobeForce() { return 0.5 * (amplitudeForce() - unloaded_); }
 
 private:
@@ -47,13 +47,13 @@ private:
     return ring_.forces().of<WaveGeneratorContact>().force.dot(surface_);
   }
 
-  /// Unbalanced force on the amplitude [N]. The springs of the lobes give it a slope of at least 2 k by the amplitude.
+  /// Unbalanced force on the amplitude [N]. Its derivative by the amplitude is at least that of the springs, 2 k.
   double excess()
   {
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);
   }
 
-  /// Moves to the target or, if single teeth snap, to the next equilibrium.
+  /// Moves to the target. If single teeth snap on the way, descends to the next equilibrium.
   SolveStatus move(const DrivePosition& target)
   {
     const SolveStatus status = ring_.moveTo(target);
@@ -72,7 +72,7 @@ private:
     return move(target);
   }
 
-  /// Solves by the Illinois variant of false position between the present amplitude and one beyond the balance.
+  /// Solves for the amplitude in balance by the Illinois variant of false position.
   SolveStatus balanceAmplitude()
   {
     constexpr int MAX_ITERATIONS = 60;
@@ -94,7 +94,7 @@ private:
       other_excess = excess();
       if (other == 0.0)
       {
-        status.code = SolveCode::UNBALANCED;  // the lobes have collapsed
+        status.code = SolveCode::UNBALANCED;  // the lobes have collapsed: the force exceeds that of their springs
       }
     }
     for (int i = 0; i < MAX_ITERATIONS && status.ok() && std::abs(excess()) > FORCE_TOLERANCE; ++i)
@@ -154,7 +154,7 @@ RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unlo
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress)
 {
-  constexpr double FALL = 0.9;  // share of the largest torque: a larger decrease is a jump, a smaller one a ripple
+  constexpr double FALL = 0.9;  // torque over the largest torque, below which a decrease is a jump and no ripple
   RatchetResult result;
   const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, parameters.solver);

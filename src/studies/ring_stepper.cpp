@@ -95,7 +95,7 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
         q_bar_ += length * tableau_.before[k][j] * speeds_[j];
         v_bar_ += length * tableau_.before[k][j] * accelerations_[j];
       }
-      // The guess continues from the preceding stage with its acceleration. A driven body keeps its speed exactly.
+      // The first guess extrapolates the last stage with its acceleration. A driven body keeps its speed exactly.
       if (i > 0)
       {
         v_ += (tableau_.times[k] - tableau_.times[k - 1]) * length * accelerations_[k - 1];
@@ -130,7 +130,7 @@ bool ImplicitRingStepper::attempt(RingMotion& motion, double length) noexcept
   return true;
 }
 
-/// Computes the explicit first stage from the last evaluated forces.
+/// Computes the explicit first stage of a step from the last evaluated forces.
 void ImplicitRingStepper::begin(const Eigen::VectorXd& speeds) noexcept
 {
   speeds_.front() = speeds;
@@ -147,9 +147,8 @@ void ImplicitRingStepper::accept() noexcept
   }
 }
 
-/// Computes the out-of-balance force for the speeds v_, with q_ from them, into residual_. The unknowns are speeds,
-/// because differences of positions lose digits in short steps. @returns the Euclidean norm, with torques as forces at
-/// the rim [N].
+/// Computes q_ from the speeds v_, and the out-of-balance force into residual_. The unknowns are speeds, because
+/// differences of positions lose digits in short steps. @returns the Euclidean norm, torques as forces at the rim [N].
 double ImplicitRingStepper::residual(double time) noexcept
 {
   q_ = q_bar_ + stage_step_ * v_;
@@ -178,10 +177,10 @@ bool ImplicitRingStepper::factor() noexcept
 
 bool ImplicitRingStepper::solveStage(double time) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.01;  // with a smaller ratio the factors serve another iteration
+  constexpr double GOOD_CONTRACTION = 0.01;  // ratio of norms below which the next iteration uses the factors again
   double norm = residual(time);
   bool useful = factored_;
-  bool own = false;  // the factors belong to this point
+  bool own = false;  // whether the factors belong to this point
   for (int i = 0; i < parameters_.max_iterations; ++i)
   {
     if (!std::isfinite(norm))
@@ -238,15 +237,16 @@ bool ImplicitRingStepper::searchLine(double time, double& norm) noexcept
 
 namespace
 {
-/// Integrates a dynamic ring with step control: the error of every tooth in one step is within the tolerance.
+/// Integrates a dynamic ring with step control, so that no tooth's error in one step exceeds the tolerance.
 ///
 /// Proportional-integral control of the step length (Gustafsson 1991; Hairer and Wanner IV.2):
-///   next / present = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),   0.2 ... 5
-/// where   e_n   error estimate of step n over the tolerance, at most 1; k   its order in the step length
+///   next length / this length = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),  limited to 0.2 ... 5
+/// where   e_n   error estimate of the accepted step n over the tolerance;  k   order of the estimate in the step
+/// length
 ///
-/// A step with e_n > 1 is repeated with a shorter length, and the step after it does not grow. The forces have a kink
-/// where a tooth begins or ends contact. There is no event detection: the estimate increases and the steps become
-/// shorter. Only the constructor allocates.
+/// A step with e_n > 1 is repeated with a shorter length, and the next step is not longer. The forces have a kink where
+/// a tooth begins or ends contact. The class does not detect such events, but there the estimate increases and the
+/// steps become shorter. Only the constructor allocates.
 class AdaptiveRingStepper : public RingStepper
 {
 public:
@@ -261,11 +261,11 @@ public:
   {
   }
 
-  /// Integrates over `length` in as many steps as needed. The step length is kept for the next call. @returns false if
-  /// the steps become shorter than SHORTEST of the length.
+  /// Integrates over `length` in as many steps as needed. The next call starts with the last step length. @returns
+  /// false if a step would be shorter than the share SHORTEST of `length`.
   bool step(RingMotion& motion, double length) noexcept override
   {
-    constexpr double SHORTEST = 1e-9;  // share of the whole length
+    constexpr double SHORTEST = 1e-9;  // shortest step over `length` [-]
     const double end = motion.time + length;
     begin_ = motion;
     method_.restart();
@@ -276,7 +276,7 @@ public:
     double rest = length;
     while (rest > 0.0)
     {
-      // The remaining time is divided evenly, which avoids a tiny last step.
+      // Equal division of the remaining time avoids a tiny last step.
       const double stride = rest / std::max(1.0, std::ceil(rest / next_ - 1e-9));
       before_ = motion;
       ring_.pairTeeth(motion.q, motion.time);
@@ -320,19 +320,19 @@ private:
   static constexpr double SAFETY = 0.9;
   static constexpr double MIN_CHANGE = 0.2;
   static constexpr double MAX_CHANGE = 5.0;
-  static constexpr double MIN_RATIO = 1e-6;  // lower limit of an error that is small by chance
+  static constexpr double MIN_RATIO = 1e-6;  // lower limit of e_n, which may be small by chance
 
-  /// Length in which the present accelerations move no tooth by more than the tolerance [s].
+  /// Length of a first step in which the current accelerations move no tooth by more than the tolerance [s].
   double firstStep(const RingMotion& motion, double length) noexcept
   {
     ring_.evaluate(motion.q, motion.v, motion.time);
     const int teeth = 2 * ring_.teeth();
     const double largest = ring_.force().cwiseProduct(ring_.inverseMass()).head(teeth).lpNorm<Eigen::Infinity>();
     const double step = std::sqrt(tolerance_ / largest);
-    return step < length ? step : length;  // the whole length without acceleration
+    return step < length ? step : length;  // also `length` if all accelerations are 0
   }
 
-  /// Factor on the step length after an accepted step.
+  /// Factor on the step length after an accepted step with e_n = `ratio`.
   double growth(double ratio) noexcept
   {
     const double power = 1.0 / method_.errorPower();
@@ -348,14 +348,14 @@ private:
   ImplicitRingStepper method_;
   double tolerance_;
   double next_{};           // next step of the control; 0: not determined yet [s]
-  double previous_{ 1.0 };  // e of the last accepted step
+  double previous_{ 1.0 };  // e_n of the last accepted step
   bool just_rejected_{};
   RingMotion begin_;
   RingMotion before_;
 };
 
-/// The classical Runge-Kutta method of Boost.odeint. It has little numerical damping, but the stiffest mode limits the
-/// step to 2.8 over its angular frequency. It is the reference for the implicit methods.
+/// The classical Runge-Kutta method of Boost.odeint, as reference for the implicit methods. It has little numerical
+/// damping, but the step must be shorter than 2.8 over the angular frequency of the stiffest mode.
 class ExplicitRingStepper : public RingStepper
 {
 public:

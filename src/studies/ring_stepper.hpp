@@ -31,8 +31,8 @@ struct StepCounts
   long steps{};
   long force_evaluations{};
   long factorisations{};
-  long halvings{};    ///< steps that did not converge and were halved
-  long rejections{};  ///< steps whose error was too large
+  long halvings{};    ///< number of steps that did not converge and were halved
+  long rejections{};  ///< number of steps that were repeated because their error was too large
 };
 
 /// Interface of the integration methods of a dynamic ring.
@@ -41,7 +41,7 @@ class RingStepper
 public:
   virtual ~RingStepper() = default;
 
-  /// Advances one step; the teeth get their spaces at its start. On failure the motion does not change.
+  /// Advances by one step, with the assignment of teeth to spaces at its start. On failure the motion does not change.
   virtual bool step(RingMotion& motion, double length) noexcept = 0;
 
   const StepCounts& counts() const noexcept { return counts_; }
@@ -61,15 +61,15 @@ enum class RingMethod
 /// Whether the method has an error estimate, which step control needs.
 bool judgesItsError(RingMethod method);
 
-/// `force_tolerance`: out-of-balance force of an implicit stage [N], at least the rounding error of the coordinates.
-/// `tolerance` > 0: largest error of a tooth's position in one step, for methods with step control [m]; 0: steps of the
-/// requested length.
+/// Makes the stepper of a method. The out-of-balance force of an implicit stage is at most solver.force_tolerance [N]
+/// or the rounding error of the coordinates. `tolerance`: largest error of a tooth's position in one step, for methods
+/// with step control [m]; 0: steps of the requested length.
 std::unique_ptr<RingStepper> makeRingStepper(RingMethod method, DynamicRing& ring, const SolverParameters& solver,
                                              double tolerance = 0.0);
 
-/// Positions and speeds of a ring in equilibrium while the wave generator turns at `speed` [rad/s] under a constant
-/// `load` [N.m]. `ring`: in equilibrium under that load. The output turns at its mean speed over a tooth pitch, because
-/// its inertia does not let it follow faster. @returns a status that is not ok() if an equilibrium was not found.
+/// Sets `motion` to the positions and speeds of a quasi-static ring, while the wave generator turns at `speed` [rad/s]
+/// under a constant `load` [N.m]. `ring`: in equilibrium under this load. The output turns at its mean speed over a
+/// tooth pitch, because its inertia prevents faster changes. @returns a status that is not ok() if this fails.
 inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed, double load, RingMotion& motion)
 {
   const double pitch = ring.model().rest.pitchAngle();
@@ -85,8 +85,8 @@ inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed
   return status;
 }
 
-/// Direct solver for the ring's tangent over all coordinates: the cyclic part of the teeth with a border of the two
-/// angles, which two more right-hand sides condense to 2 x 2. Only the constructor allocates.
+/// Direct solver for the ring's tangent over all coordinates: a cyclic matrix of the teeth with a border for the two
+/// angles. Two more right-hand sides condense the border to a 2 x 2 matrix. Only the constructor allocates.
 class BorderedRingSolver
 {
 public:
@@ -95,8 +95,8 @@ public:
   {
   }
 
-  /// Factors the tangent. `held`: wave generator and output, whose solution is then zero. @returns false if the tangent
-  /// is singular or not finite.
+  /// Factors the tangent. `held`: whether wave generator and output are held, so that their solution is zero. @returns
+  /// false if the tangent is singular or not finite.
   bool factor(const RingTangent& tangent, const std::array<bool, 2>& held) noexcept
   {
     held_ = held;
@@ -128,7 +128,7 @@ public:
     return corner_inverse_.allFinite();
   }
 
-  /// Solves in place for 2 N of the teeth, wave generator and output.
+  /// Solves in place for 2 N coordinates of the teeth, wave generator and output.
   void solve(Eigen::VectorXd& b) noexcept
   {
     scratch_ = b.head(scratch_.size());
@@ -169,10 +169,10 @@ private:
 struct RungeKuttaTableau
 {
   int order;
-  double gamma;                             ///< diagonal of the implicit stages [-]
-  bool explicit_first;                      ///< the first stage is the start of the step
-  std::vector<std::vector<double>> before;  ///< weights of the preceding stages, one row for each stage [-]
-  std::vector<double> times;                ///< times of the stages in steps [-]
+  double gamma;                             ///< diagonal coefficient of the implicit stages [-]
+  bool explicit_first;                      ///< whether the first stage is explicit, at the start of the step
+  std::vector<std::vector<double>> before;  ///< weights of the earlier stages, one row for each stage [-]
+  std::vector<double> times;                ///< times of the stages, as shares of the step [-]
   std::vector<double> error;                ///< weights of the embedded error estimate; empty: none [-]
   int error_power;                          ///< order of the estimate in the step length; 0: none
 
@@ -181,15 +181,15 @@ struct RungeKuttaTableau
   double weight(int i) const { return i + 1 == stages() ? gamma : before.back()[static_cast<std::size_t>(i)]; }
 };
 
-/// Order 1, L-stable; ode14x in the thesis' chapter 6 extrapolates it.
+/// Implicit Euler method: order 1, L-stable. The solver ode14x of the thesis' chapter 6 extrapolates this method.
 inline const RungeKuttaTableau& implicitEuler()
 {
   static const RungeKuttaTableau TABLEAU{ 1, 1.0, false, { {} }, { 1.0 }, {}, 0 };
   return TABLEAU;
 }
 
-/// Order 2, L-stable, stage order 2: trapezoidal rule and BDF2 in one method (Bank et al. 1985) with an embedded method
-/// of order 3 (Hosea and Shampine 1996).
+/// Order 2, L-stable, stage order 2: trapezoidal rule followed by BDF2 (Bank et al. 1985), with an embedded method of
+/// order 3 (Hosea and Shampine 1996).
 inline const RungeKuttaTableau& trBdf2()
 {
   static const RungeKuttaTableau TABLEAU = []
@@ -237,11 +237,12 @@ inline const RungeKuttaTableau& esdirk4()
 
 /// Diagonally implicit Runge-Kutta method with the structure of the ring.
 ///
-/// A stage at time t solves for the coordinates q, with q_bar and v_bar of the preceding stages and g = gamma h:
+/// A stage at time t solves for the coordinates q and their speeds v:
 ///   f(q, v, t) - M (v - v_bar) / g = 0,   v = (q - q_bar) / g
-/// by Newton's method with the matrix K + C / g + M / g^2: that of the equilibrium with a larger diagonal. Its factors
-/// serve all stages of a step while they contract well. The line search uses the out-of-balance force. A step that does
-/// not converge is halved. Only the constructor allocates.
+/// where f is the force, M the mass, q_bar and v_bar follow from the earlier stages, and g = gamma h with the step h.
+/// Newton's method uses the matrix K + C / g + M / g^2, whose factors serve all stages of a step while the iteration
+/// contracts well. The line search uses the out-of-balance force. A step that does not converge is halved. Only the
+/// constructor allocates.
 class ImplicitRingStepper : public RingStepper
 {
 public:
@@ -250,14 +251,13 @@ public:
 
   bool step(RingMotion& motion, double length) noexcept override;
 
-  /// Attempts one step of this length with the present spaces of the teeth. @returns false without changing the motion.
+  /// Attempts one step with the current spaces of the teeth. @returns false, with the motion unchanged, if it diverges.
   bool attempt(RingMotion& motion, double length) noexcept;
-  /// Must be called before the first attempt, and after external changes of motion or drive.
+  /// Forgets the first stage. Call it before the first attempt, and after external changes of motion or drive.
   void restart() noexcept { begun_ = false; }
-  /// Accepts the last attempt, whose end is the start of the next one. Otherwise the next one starts where the last
-  /// did.
+  /// Accepts the last attempt: the next attempt starts at its end, and without this call at its start.
   void accept() noexcept;
-  /// Error of the last attempt by the embedded method: the largest of the teeth's positions [m].
+  /// Largest error of a tooth's position in the last attempt, estimated by the embedded method [m].
   double errorEstimate() const noexcept { return error_; }
   int errorPower() const noexcept { return tableau_.error_power; }  ///< order of the estimate in the step length
 
@@ -271,13 +271,13 @@ private:
   DynamicRing& ring_;
   const RungeKuttaTableau& tableau_;
   SolverParameters parameters_;
-  Eigen::VectorXd weight_;  // weights of the forces, by which torques count as forces at the rim [-], [1/m]
-  Eigen::VectorXd free_;    // 1, or 0 for a driven body [-]
+  Eigen::VectorXd weight_;  // weights of the forces [-], and of the torques, which count as forces at the rim [1/m]
+  Eigen::VectorXd free_;    // 1 for a free coordinate, 0 for a driven body [-]
   RingTangent tangent_;
   BorderedRingSolver solver_;
   double stage_step_{};  // gamma h of the step [s]
-  bool factored_{};      // in this step
-  bool begun_{};         // the explicit first stage is computed
+  bool factored_{};      // whether the matrix was factored in this step
+  bool begun_{};         // whether the explicit first stage is computed
   double largest_{};     // largest component of the out-of-balance force [N]
   double error_{};       // [m]
   // Working memory.

@@ -15,8 +15,7 @@
 
 namespace hjt
 {
-/// Causes of an alarm: none, the kinds of faults (from FIRST_FAULT on, in their order), and a damaged tooth of the
-/// circular spline.
+/// Causes of an alarm: none, the kinds of faults (from FIRST_FAULT on), and a damaged tooth of the circular spline.
 enum class Cause : std::uint8_t
 {
   NONE,

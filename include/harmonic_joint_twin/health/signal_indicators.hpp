@@ -28,15 +28,15 @@ enum class Line : std::size_t
   CIRCULAR_SPLINE_2,  ///< each lobe passes a place of the circular spline
   CAGE_LOBES,         ///< each lobe passes a place of the cage
   CAGE_LOBES_DOUBLE,
-  BALL,            ///< a place on a ball meets one of the races
-  BALL_BELOW,      ///< order of BALL minus that of CAGE_LOBES: sideband, because the lobes load the ball in turn
-  BALL_FAR_BELOW,  ///< order of BALL minus twice that of CAGE_LOBES
-  BALL_ABOVE,      ///< order of BALL plus that of CAGE_LOBES
+  BALL,             ///< a place on a ball meets one of the races
+  BALL_BELOW,       ///< order of BALL minus that of CAGE_LOBES: sideband, because the lobes load the ball in turn
+  BALL_FAR_BELOW,   ///< order of BALL minus twice that of CAGE_LOBES
+  BALL_ABOVE,       ///< order of BALL plus that of CAGE_LOBES
   OUTER,            ///< balls roll over a place of the outer race
   OUTER_BELOW,      ///< order of OUTER minus 2: sideband, because the two lobes load the place in turn
   OUTER_FAR_BELOW,  ///< order of OUTER minus 4
   OUTER_ABOVE,      ///< order of OUTER plus 2
-  INNER,  ///< balls roll over a place of the inner race, which turns with the lobes
+  INNER,            ///< balls roll over a place of the inner race, which turns with the lobes
   INNER_DOUBLE,
   WAVE_GENERATOR_4_LOAD,  ///< part of WAVE_GENERATOR_4 in proportion to the load
   WAVE_GENERATOR_6_LOAD,

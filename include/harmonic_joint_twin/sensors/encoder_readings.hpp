@@ -12,7 +12,7 @@ struct EncoderReadings
   double motor_angle{};          ///< angle of the motor since the start [rad]
   double motor_velocity{};       ///< mean speed of the motor over sensors.velocity_window [rad/s]
   std::uint32_t output_count{};  ///< absolute count of the output's encoder within a turn
-  double output_angle{};         ///< angle of the output over several turns [rad]
+  double output_angle{};         ///< angle of the output, with whole turns [rad]
   double output_velocity{};      ///< mean speed of the output over sensors.velocity_window [rad/s]
 };
 }  // namespace hjt

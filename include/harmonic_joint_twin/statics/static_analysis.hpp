@@ -21,11 +21,11 @@ struct ToothTable
   std::vector<double> rim_tension;           ///< tension of the rim to the next tooth [N]
   std::vector<double> bending_force;         ///< bending force of the segment to the next tooth [N]
   std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
-  // Nominal normal stress at each place of ToothStress.
+  // Nominal normal stress at each place of the flexspline (ToothStress).
   std::vector<double> stress_tooth_space;  ///< [Pa]
   std::vector<double> stress_transition;   ///< [Pa]
   std::vector<double> stress_flange;       ///< [Pa]
-  // Position of the tooth in its space of the circular spline, see ToothPlace.
+  // Position of the tooth in its space of the circular spline (ToothPlace).
   std::vector<double> across;  ///< [m]
   std::vector<double> depth;   ///< [m]
   std::vector<double> tilt;    ///< [rad]
@@ -35,7 +35,7 @@ struct ToothTable
 /// Static equilibrium of the flexspline on the wave generator, without the circular spline (thesis ch. 5-6).
 struct InsertionResult
 {
-  SolveStatus status;                 ///< the numbers are valid if ok()
+  SolveStatus status;                 ///< status of the solve; the numbers are valid if ok()
   double wave_generator_force_max{};  ///< largest force of the wave generator on a tooth [N]
   double wave_generator_force_min{};  ///< least force of the wave generator on a tooth [N]
   double wave_generator_force_sum{};  ///< sum of the forces of the wave generator over all teeth [N]
@@ -48,27 +48,27 @@ struct InsertionResult
   double solve_time{};                ///< computing time [s]
   ToothTable teeth;                   ///< every tooth
 };
-/// Computes the insertion. If the solve fails, `status` says so and the other numbers are invalid.
+/// Computes the insertion. If the solve fails, `status` is not ok() and the other numbers are invalid.
 InsertionResult analyseInsertion(const Parameters& parameters);
 
 /// Check whether the teeth fit into each other without load.
 struct FitCheck
 {
-  SolveStatus status;                       ///< the numbers are valid if ok()
+  SolveStatus status;                       ///< status of the solves; the numbers are valid if ok()
   int teeth_loaded{};                       ///< number of teeth that carry mesh force without load
   double wave_generator_force{};            ///< sum of the wave generator's forces over the teeth, without load [N]
-  double wave_generator_force_insertion{};  ///< the same sum without the circular spline [N]
+  double wave_generator_force_insertion{};  ///< sum of the wave generator's forces without circular spline [N]
 
-  /// Whether the teeth load the wave generator more than the bent rim alone does.
+  /// Whether the teeth jam: they load the wave generator more than the bent rim alone does.
   bool jams() const noexcept { return status.ok() && wave_generator_force > 2.0 * wave_generator_force_insertion; }
 };
-/// Computes two insertions, without and with the circular spline. If a solve fails, `status` says so.
+/// Computes two insertions, without and with the circular spline. If a solve fails, `status` is not ok().
 FitCheck checkFit(const Parameters& parameters);
 
 /// Equilibrium with the wave generator locked and a load on the circular spline, without friction.
 struct StiffnessRow
 {
-  SolveStatus status;     ///< the numbers are valid if ok()
+  SolveStatus status;     ///< status of the solve; the numbers are valid if ok()
   double torque{};        ///< load on the circular spline [N.m]
   double output_angle{};  ///< angle of the output relative to zero load [rad]
   /// torque of the flexspline on the wave generator, about -torque over the ratio [N.m]
@@ -83,24 +83,24 @@ struct StiffnessRow
   ToothStress stress;  ///< stresses of the flexspline
   ToothTable teeth;    ///< every tooth
 };
-/// Returns one row for each torque, in their order. Each solve starts from no load, so that no row depends on another.
-/// `wave_generator_angle`: any [rad]; `torques`: at the output, > 0 resists positive motion, any finite value [N.m].
-/// `status` of a row tells whether its solve failed. Source: thesis 7.1 to 7.5.
+/// Returns one row for each torque, in the order of `torques`. Each solve starts without load, so that the rows do not
+/// depend on each other. `wave_generator_angle` [rad] and `torques` [N.m] may have any finite value. Torques act at the
+/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Thesis 7.1 to 7.5.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 
 /// Equilibrium at one angle of a quasi-static turn at constant load, without friction.
 struct TurnRow
 {
-  SolveStatus status;             ///< the numbers are valid if ok()
+  SolveStatus status;             ///< status of the solve; the numbers are valid if ok()
   double wave_generator_angle{};  ///< angle of the wave generator [rad]
   double output_angle{};          ///< angle of the output [rad]
   double kinematic_error{};  ///< deviation of the output from the wave generator's angle over the nominal ratio [rad]
   double wave_generator_torque{};  ///< torque of the flexspline on the wave generator [N.m]
   double housing_torque{};         ///< torque of the housing on the flexspline, through its cup [N.m]
 };
-/// Returns rows 0 ... `steps` of a turn from angle 0 to `angle_range` [rad], steps >= 1; `load_torque` acts at the
-/// output [N.m]. The function calls `progress` with each finished step. @throws InputError if steps < 1.
+/// Returns `steps` + 1 rows, evenly spaced from angle 0 to `angle_range` [rad], with steps >= 1. `load_torque` [N.m]
+/// acts at the output. The function calls `progress` with each finished step. @throws InputError if steps < 1.
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
                                  const std::function<void(int)>& progress);
 }  // namespace hjt

@@ -39,14 +39,14 @@ struct ToothStress
 {
   explicit ToothStress(int teeth = 0) { normal.fill(std::vector<double>(static_cast<std::size_t>(teeth))); }
 
-  /// Normal stress by place and tooth [Pa]. Its direction is around the rim in the tooth spaces beside the tooth, and
-  /// along the axis at the transition and the flange.
+  /// Normal stress by place and tooth [Pa]. In the tooth spaces on both sides of the tooth the stress acts along the
+  /// circumference, at transition and flange along the axis.
   std::array<std::vector<double>, STRESS_PLACES> normal;
   /// Shear stress by place, constant around the circumference [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// Stress cycle of one tooth over a turn. With equal teeth it has the same values as all teeth at one instant.
-  /// `place`: less than STRESS_PLACES.
+  /// Stress cycle of one tooth over a turn at a place, computed from all teeth at this instant. The two are equal for
+  /// equal teeth. `place` < STRESS_PLACES.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());

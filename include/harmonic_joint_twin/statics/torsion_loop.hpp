@@ -16,7 +16,7 @@ struct TorsionPoint
   double output_angle{};
 };
 
-/// Torsion with friction of the teeth, for a locked wave generator and a load that cycles slowly.
+/// Torsion of the gear under a slow load cycle, with friction of the teeth and a locked wave generator.
 struct TorsionLoop
 {
   SolveStatus status;                ///< the numbers are valid if ok()
@@ -26,8 +26,8 @@ struct TorsionLoop
   double lost_motion{};
 };
 
-/// Computes the loop. `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: for example 4 % of the rated torque,
-/// > 0 and at most the amplitude [N.m]; `steps`: number of angles of one sweep, >= 2. @throws InputError if one is out
-/// of range.
+/// Computes the loop. `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: load at which the lost motion is
+/// measured, for example 4 % of the rated torque, > 0 and at most the amplitude [N.m]; `steps`: number of angles in
+/// each direction, >= 2. @throws InputError if an argument is out of range.
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps);
 }  // namespace hjt
