@@ -36,9 +36,9 @@ std::string whyNotJudged(const Assessment& assessment)
     case AssessmentState::NO_REFERENCE:
       return assessment.windows_here == 0 ?
                  "there is no healthy reference for this operating point" :
-                 "the healthy reference needs " + needed + " windows at this operating point, has " + here;
+                 "the healthy reference needs " + needed + " windows at this operating point, but has " + here;
     case AssessmentState::TOO_FEW_WINDOWS:
-      return "too few windows: a verdict needs " + needed + " at one operating point, has " + here;
+      return "too few windows: a verdict needs " + needed + " at one operating point, but has " + here;
     case AssessmentState::OTHER_PAYLOAD:
       return "the reference has no windows with this payload, load or gain of the current: add windows with this "
              "payload and load to the reference, or correct the torque per current";
@@ -85,7 +85,7 @@ void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators*
   }
 }
 
-/// Judges a window, except for the cause.
+/// Judges a window, without the search for its cause.
 void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;

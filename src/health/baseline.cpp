@@ -314,7 +314,7 @@ void Baseline::take(const ReferenceBin& bin, const Place& place, const SignalInd
     window.difference[i] = indicators.values[i] - expected_[i];
     if (const double sound = residual_.sound[i]; isFreeAmplitude(i) && sound > 0.0)
     {
-      // Correction, because the mean of amplitudes to the power 2/3 is below the mean amplitude to this power.
+      // The last term corrects for the mean of amplitudes^(2/3), which is below (mean amplitude)^(2/3).
       window.difference[i] =
           amplitudeChange(sound, window.difference[i]) + std::min(reference.variance / sound, sound) / 6.0;
     }

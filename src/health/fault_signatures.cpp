@@ -41,7 +41,7 @@ constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 0.0, 0.0, 0.5 },
                                               { 0.0, 0.0, 1.0 } } };
 
-/// Changes by a dragging brake and by noise. Noise increases the kinematic error (peak to peak).
+/// Changes of the indicators by a dragging brake and by noise. Noise increases the kinematic error (peak to peak).
 Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
 {
   constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
@@ -119,8 +119,8 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
         take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
         continue;
       }
-      // Length of the change of the line's vector. Its square is reduced by 1, one of two degrees of freedom, so that
-      // noise has the same mean square score as in other indicators.
+      // The score is the length of the change of the line's vector. Its square is smaller by 1, so that noise of two
+      // parts has the mean square score of one indicator.
       const Deviation& cosine = deviations[cosineIndex(signal, line)];
       const Deviation& sine = deviations[sineIndex(signal, line)];
       const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;
@@ -139,7 +139,7 @@ void CauseSearch::Sum::add(double weighted, double prior, double severity) noexc
   second += weight * severity * severity;
 }
 
-/// Rows of single signatures, then rows of two or three signatures that occur together.
+/// Rows of the search: all single signatures, then all sums of two or three signatures that occur together.
 std::vector<CauseSearch::Row> CauseSearch::rowsOf(const SignatureSet& set)
 {
   std::vector<Row> rows;

@@ -23,7 +23,7 @@ struct TorsionSample
   double output_angle;  ///< [rad]
 };
 
-/// Two first-order lags in a row.
+/// Two first-order lags in series, for several quantities.
 ///
 /// Law:   y = F x,   F = 1 / (1 + s t)^2,   t = TIME
 /// where  x, y  quantity, smoothed quantity;  s  Laplace variable
@@ -73,7 +73,7 @@ class Play
 public:
   explicit Play(double width) : half_(0.5 * width) {}
 
-  /// -1 while the quantity falls, +1 while it rises, and a value between them just after a reversal.
+  /// Returns -1 while the quantity falls, +1 while it rises, and a value between -1 and +1 just after a reversal.
   double follow(double quantity) noexcept
   {
     centre_ = std::clamp(centre_, quantity - half_, quantity + half_);
@@ -218,8 +218,8 @@ private:
   static constexpr double MAX_INFLATION =
       10.0;  // largest inflation of the variance of h; it is larger if the branches lie at different torques [-]
   static constexpr double DIRECTION_PLAY = 0.1;  // play of the motor angle, far above an encoder's noise [rad]
-  // Mean square of e's column, as far as the other columns do not explain it, that determines e [-]. It exceeds (15
-  // urad / 0.44 mrad)^2, by the law's residual for a sound drive and an eccentricity (config/real_sensors.yaml).
+  // Mean square that e's column must have after regression on the other columns, to determine e [-]. It exceeds (15
+  // urad / 0.44 mrad)^2, the law's residual for a sound drive over an eccentricity (config/real_sensors.yaml).
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
   static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
 

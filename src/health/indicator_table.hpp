@@ -69,16 +69,16 @@ inline constexpr std::array<ScalarRow, SCALAR_COUNT> SCALARS{ {
     { ScalarIndicator::LAG_ORDER_2, "lag_order_2", "rad", Feature::ORDER_2 },
     { ScalarIndicator::LAG_ORDER_4, "lag_order_4", "rad", Feature::ORDER_4 },
 } };
-static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "a row for each ScalarIndicator, in its order");
+static_assert(isInOrder(SCALARS, &ScalarRow::indicator), "SCALARS must have a row for each ScalarIndicator, in order");
 
-/// Signal of a line's amplitude, or of a cosine or sine part.
+/// Signal of a line, for an indicator that is the amplitude, cosine part or sine part of the line.
 constexpr LineSignal signalOf(std::size_t indicator)
 {
   return indicator < LOADED_BLOCK ? ALL_LINE_SIGNALS[(indicator - SCALAR_COUNT) / LINE_BLOCK] :
                                     LineSignal::MOTOR_RIPPLE;
 }
 
-/// Index of the amplitude of a line for the cosine or sine part of the line; any other index itself.
+/// For the cosine or sine part of a line, the index of the line's amplitude; for other indicators, `indicator` itself.
 constexpr std::size_t amplitudeOf(std::size_t indicator)
 {
   const bool loaded = indicator >= LOADED_BLOCK;
@@ -121,5 +121,5 @@ inline constexpr std::array<LineRow, LINE_COUNT> LINES{ {
     { Line::WAVE_GENERATOR_6_LOAD_LAG, "wave_generator_6_load_lag", Feature::ORDER_6 },
     { Line::WAVE_GENERATOR_8_LOAD_LAG, "wave_generator_8_load_lag", Feature::ORDER_8 },
 } };
-static_assert(isInOrder(LINES, &LineRow::line), "a row for each Line, in its order");
+static_assert(isInOrder(LINES, &LineRow::line), "LINES must have a row for each Line, in order");
 }  // namespace hjt

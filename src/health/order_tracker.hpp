@@ -195,7 +195,7 @@ public:
   /// Kinematic error of the last added sample minus the kinematic error by the last fit [rad].
   double residual() const noexcept { return targets_[0] - row_.dot(regression_.coefficients(0)); }
 
-  /// Signals of a sample, by LineSignal, minus their values by the last fit without the lines in `without`.
+  /// Signals of a sample, by LineSignal, minus the values that the last fit predicts without the lines `without`.
   Eigen::Vector3d beside(const LineSample& sample, const std::array<bool, FIRST_LOADED>& without) const noexcept
   {
     Row row;

@@ -184,7 +184,7 @@ bool tellsTail(std::size_t indicator) noexcept
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// Histogram, over logarithmic classes, of the deviation of each window from all other windows, in their spread.
+/// Histogram, over logarithmic classes, of the deviation of each window from all others over the spread of the others.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;

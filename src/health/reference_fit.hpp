@@ -60,15 +60,15 @@ double excessOf(double tail) noexcept;
 /// How the distribution of deviation / spread differs from the normal distribution (symbols of Baseline).
 struct Uncertainty
 {
-  double inverse{};  // 1 / v'
-  double of_mean{};  // y^2 a / k
+  double inverse{};  // inverse degrees of freedom, 1 / v'
+  double of_mean{};  // part of `inverse` by single windows, y^2 a / k
 
   double freedom() const noexcept;  ///< degrees of freedom v' [-]
   double stretch() const noexcept;  ///< factor g that makes deviation / spread a Student's t [-]
 };
 
-/// Uncertainty by the symbols of Baseline. `learned`: share y of the variance that was estimated from windows; `tail`:
-/// a; `weight`: k; `freedom`: degrees of freedom of the estimate, v + v_0.
+/// `learned`: share y of the variance that was estimated from windows; `tail`: inverse degrees of freedom a of a single
+/// window; `weight`: number k of averaged windows; `freedom`: degrees of freedom v + v_0 of the estimate.
 Uncertainty uncertaintyOf(double learned, double tail, double weight, double freedom) noexcept;
 
 constexpr double LEAST_LEFT = 1e-4;  ///< least share of a variance that common causes do not explain [-]

@@ -25,8 +25,8 @@ namespace hjt
 {
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
-/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Indicators that need a
-/// missing signal are not determined: a second encoder, a load estimate (efficiency) or set points (lag).
+/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Without an encoder the
+/// indicators that need both are not determined, without a load estimate the efficiency, without set points the lag.
 struct SignalSample
 {
   std::int64_t stamp{};                   ///< [ns]
@@ -123,7 +123,7 @@ public:
     }
   }
 
-  /// Inertia at the motor [kg.m^2].
+  /// Fits the first law. Returns the inertia at the motor [kg.m^2].
   double fit(bool load_known) noexcept
   {
     Eigen::Matrix<double, COLUMNS, 1> row = Eigen::Matrix<double, COLUMNS, 1>::Zero();
@@ -132,7 +132,7 @@ public:
     return regression_.fit(load_known ? COLUMNS - 2 : COLUMNS) ? regression_.coefficient(0, 0) : 0.0;
   }
 
-  /// Friction by load, l [-].
+  /// Fits the second law. Returns the friction by load, l [-].
   Indicator loadFriction() noexcept
   {
     constexpr int LOAD = COLUMNS - 1;

@@ -236,7 +236,7 @@ private:
     }
   }
 
-  /// Adds the changes of `of_robots` to a signature, interpolated linearly between severities, and from 0.
+  /// Adds the changes of `of_robots` to a signature, interpolated linearly over the severity, from 0 at severity 0.
   void addOfRobots(Signature& signature) const
   {
     RobotSignature before{};

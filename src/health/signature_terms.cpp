@@ -144,7 +144,7 @@ double SignatureTerms::misfit(const SignatureParts& parts) const noexcept
   return count_ > 0 ? std::max(1.0, square / static_cast<double>(count_)) : 1.0;
 }
 
-/// Change by a signature, in the indicator's unit; before amplitudeChange for the amplitude of a line.
+/// Change of an indicator by a signature, in the indicator's unit, before the transformation by amplitudeChange.
 double SignatureTerms::shareOrChange(const Signature& signature, const Term& term) const noexcept
 {
   const double change = signature.change[term.number];

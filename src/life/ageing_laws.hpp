@@ -120,16 +120,16 @@ struct DriveAge
   double flaw_depth{};      ///< depth of the deepest crack at a tooth root; 0: none [m]
   double bearing_turns{};   ///< turns at rated torque that wear the wave generator's bearing as much
   std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
-  double filling_factor{ 1.0 };  ///< rate of wear in the present filling of grease over the drive's median [-]
+  double filling_factor{ 1.0 };  ///< rate of wear in the current filling of grease over the drive's median [-]
 
-  /// larger wear depth of both load directions [m]
+  /// larger of the wear depths for the two load directions [m]
   double worstFlank() const { return std::max(flank_wear[0], flank_wear[1]); }
-  /// mean wear depth of both load directions: half of the growth of the play [m]
+  /// mean of the wear depths for the two load directions, which is half of the growth of the play [m]
   double meanFlank() const { return 0.5 * (flank_wear[0] + flank_wear[1]); }
 };
 
 /// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-].
-/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is half the logarithm.
+/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half their logarithm.
 constexpr double RATE_SCATTER = 0.25;
 
 /// Standard deviation of the logarithm of the transition's strength relative to that of the tooth space [-]. The stress

@@ -35,8 +35,8 @@ public:
 
   struct Life
   {
-    double hours{};                ///< time of the end of use, or the requested time
-    std::optional<EndOfLife> end;  ///< reason; empty if the drive is still in use
+    double hours{};                ///< hours of use until the end of use, or the requested hours
+    std::optional<EndOfLife> end;  ///< reason for the end of use; empty if the drive is still in use
     DriveAge age;
   };
 

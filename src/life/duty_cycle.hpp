@@ -13,11 +13,11 @@
 
 namespace hjt
 {
-/// A period of constant work.
+/// A period with constant speed, load and temperature.
 struct DutyPhase
 {
   double duration{};     ///< > 0 [s]
-  double motor_speed{};  ///< only the magnitude counts [rad/s]
+  double motor_speed{};  ///< speed of the motor, of which only the magnitude counts [rad/s]
   double load_torque{};  ///< load torque at the output [N.m]
   double temperature{};  ///< temperature of the drive [degC]
 

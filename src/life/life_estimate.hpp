@@ -18,7 +18,7 @@ struct LifeEstimate
 {
   double hours{};            ///< hours of use so far
   double turns{};            ///< turns of the wave generator so far
-  RemainingHours remaining;  ///< distribution for drives that are still in use, if the use continues in the same way
+  RemainingHours remaining;  ///< remaining life of a drive that is still in use, if its use continues in the same way
   std::array<double, ENDS_OF_LIFE> used{};  ///< used share of each limit for the nominal drive [-]
   double grease_used{};                     ///< used share of the grease's life since the last due change [-]
 

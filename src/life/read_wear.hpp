@@ -72,7 +72,7 @@ constexpr double FLANK_IN_INTERFACE = 0.2;
 /// resolution may be negative.
 struct WearReading
 {
-  bool is_read{};          ///< false: the load did not change its sign, or there are no signatures of wear
+  bool is_read{};          ///< whether wear was measured, which needs a load of both signs and signatures of wear
   double flank{};          ///< severity of tooth_wear [-]
   double interface = 0.0;  ///< severity of interface_wear [-]
   double alike{};          ///< similarity of the motion to the most similar motion of a signature, 0 ... 1 [-]

@@ -182,7 +182,7 @@ struct RemainingHours
   double crps(double hours) const noexcept;
 
   std::array<double, BINS> probability{};        ///< probability that the end is in each bin [-]
-  std::array<double, SHARES.size()> quantile{};  ///< hours by which these shares have ended [h]
+  std::array<double, SHARES.size()> quantile{};  ///< hours after which the shares SHARES of all drives have ended [h]
   std::array<double, CAUSES.size()> by_cause{};  ///< probability of each cause of the end, in the order of CAUSES [-]
 };
 

@@ -34,7 +34,7 @@ class RaceCreep
 public:
   explicit RaceCreep(const Parameters& parameters);
 
-  /// Rates per wave generator angle.
+  /// Rates per angle of the wave generator.
   struct Rates
   {
     /// advance of the race in the rim in the direction of the wave generator; 0 without contact [m/rad]
@@ -42,8 +42,8 @@ public:
     double sliding{};  ///< sum of normal force times slip over the rim, for unit friction coefficient [N.m/rad]
   };
 
-  /// `running`: 2 N, derivatives of the ring's points by the motor angle [m/rad], while the output turns at the
-  /// velocity ratio.
+  /// `running`: 2 N derivatives of the ring's points by the motor angle [m/rad], while the output turns at the velocity
+  /// ratio.
   Rates at(const RingEquilibrium& ring, const Eigen::VectorXd& running);
 
 private:

@@ -181,17 +181,17 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
 
   designer.set("gear.teeth_flexspline", std::int64_t{ gear.teeth_flexspline }, "twice the ratio");
   designer.set("gear.teeth_circular_spline", std::int64_t{ gear.teeth_circular_spline },
-               "two more than the flexspline");
+               "two more teeth than the flexspline");
   designer.set("gear.flexspline_inner_radius", gear.flexspline_inner_radius, given(request.bore_radius, by_size));
   designer.set("gear.rim_thickness", gear.rim_thickness, given(request.rim_thickness, by_size));
   designer.set("gear.tooth_height_flexspline", gear.tooth_height_flexspline, "in proportion to the pitch");
   designer.set("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "bore radius + rim + tooth height");
-  designer.set("gear.wave_amplitude", gear.wave_amplitude, "teeth that roll in their spaces");
+  designer.set("gear.wave_amplitude", gear.wave_amplitude, "teeth rolling in their spaces");
   designer.scale("ring.mass", radius * face * section / from_section,
                  "in proportion to circumference, face width and thickness");
   designer.scale("ring.tension_stiffness", face * rim / pitch, "in proportion to section over segment length");
   designer.scale("ring.bending_stiffness", face * std::pow(rim, 3) / pitch,
-                 "proportional to face width * thickness^3 / segment length");
+                 "proportional to width * thickness^3 / segment length");
   designer.scale("contact.stiffness", face / teeth, "in proportion to face width over number of teeth");
   designer.scale("contact.fit", radius, by_size);
   designer.set("contact.slip_lever",
@@ -201,14 +201,14 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
   designer.scale("mesh.tangent_length", pitch, "in proportion to the pitch");
   designer.scale("mesh.engagement_depth", pitch, "in proportion to the pitch");
   designer.scale("mesh.flank_clearance", radius, by_size);
-  designer.scale("cup.torsion_stiffness", cube, "cube of the size");
-  designer.scale("cup.wall_stiffness", cube, "cube of the size");
+  designer.scale("cup.torsion_stiffness", cube, "in proportion to the cube of the size");
+  designer.scale("cup.wall_stiffness", cube, "in proportion to the cube of the size");
   designer.scale("bearing.pitch_diameter", radius, by_size);
   designer.scale("bearing.ball_diameter", radius, by_size);
   designer.scale("bearing.race_bending_stiffness", cube * teeth, "in proportion to number of teeth times size cubed");
-  designer.scale(PRELOAD, radius * radius, "square of the size");
-  designer.scale("motor.wave_generator_inertia", std::pow(radius, 5), "fifth power of the size");
-  designer.scale("output.circular_spline_inertia", std::pow(radius, 5), "fifth power of the size");
+  designer.scale(PRELOAD, radius * radius, "in proportion to the square of the size");
+  designer.scale("motor.wave_generator_inertia", std::pow(radius, 5), "in proportion to the fifth power of the size");
+  designer.scale("output.circular_spline_inertia", std::pow(radius, 5), "in proportion to the fifth power of the size");
   designer.scale("stress.wall_thickness", radius, by_size);
   designer.scale("stress.cup_length", radius, by_size);
   designer.scale("stress.notch_radius", radius, by_size);

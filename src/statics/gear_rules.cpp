@@ -149,8 +149,8 @@ std::vector<std::string> gearWarnings(const Parameters& parameters)
               .front();
       row.status.ok() && (row.gear_efficiency < 0.55 || row.gear_efficiency > 0.92))
   {
-    warnings.push_back("efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
-                       " [N.m]: " + shortNumber(row.gear_efficiency) +
+    warnings.push_back("the efficiency of the gear at life.rated_torque = " + shortNumber(sound.life.rated_torque) +
+                       " [N.m] is " + shortNumber(row.gear_efficiency) +
                        " [-], but harmonic drives have 0.55 ... 0.92; check bearing.race_preload, "
                        "bearing.viscosity, mesh.friction_kinetic and life.rated_torque");
   }

@@ -13,8 +13,8 @@
 namespace hjt
 {
 /// Amplitude w0 at which the teeth roll in their spaces without jamming [m]. At the mid-height z of the teeth above the
-/// bore of radius r0, a tooth moves by w0 (1/2 - 3 z / (2 r0)) along the circumference. This must equal (r0 + z) / (N +
-/// 2), the difference of the pitches for N teeth.
+/// bore of radius r0, a tooth moves by w0 (1/2 - 3 z / (2 r0)) along the circumference. The pitch of N + 2 spaces
+/// requires a movement of (r0 + z) / (N + 2).
 inline double fittingWaveAmplitude(const GearParameters& gear) noexcept
 {
   const double radius = gear.flexspline_inner_radius;

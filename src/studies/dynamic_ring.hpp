@@ -93,7 +93,7 @@ public:
   DynamicRing(const JointModel& model, const RingParameters& parameters, const RingDrive& drive);
 
   int teeth() const noexcept { return shape_.teeth(); }
-  int coordinates() const noexcept { return static_cast<int>(mass_.size()); }  ///< 2 N + 2
+  int coordinates() const noexcept { return static_cast<int>(mass_.size()); }  ///< number of coordinates, 2 N + 2
   int states() const noexcept { return 2 * coordinates(); }
   int waveGenerator() const noexcept { return coordinates() - 2; }  ///< index of the wave generator's angle
   int output() const noexcept { return coordinates() - 1; }         ///< index of the output's angle
@@ -102,13 +102,13 @@ public:
   void setWave(const WaveGrowth& wave) noexcept { drive_.wave = wave; }
   bool driven(int coordinate) const noexcept { return inverse_mass_[coordinate] == 0.0; }
   const Eigen::VectorXd& mass() const noexcept { return mass_; }                 ///< [kg], [kg.m^2]
-  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 0 for a driven body
+  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 1 / mass, or 0 if driven
 
   /// Assigns the nearest space to every tooth out of contact.
   void pairTeeth(const Eigen::VectorXd& q, double time) noexcept;
   void setSpaces(const std::vector<int>& spaces) noexcept { shape_.space = spaces; }
 
-  /// Computes the results below for a state.
+  /// Computes force, shape, energies and power for a state.
   void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time) noexcept;
 
   const Eigen::VectorXd& force() const noexcept { return force_; }  ///< force on every coordinate [N], [N.m]

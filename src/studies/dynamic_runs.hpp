@@ -33,7 +33,7 @@ struct TransientRow
   double force_lowest{};  ///< least value of the largest force since the preceding row [N]
   double force_highest{};
   double radius_major_axis{};  ///< radius of tooth 0 [m]
-  double stored{};             ///< stored energy since the start [J]
+  double stored{};             ///< increase of the stored energy since the start [J]
   double kinetic{};            ///< kinetic energy [J]
   double supplied{};           ///< energy supplied by the growth of the wave generator [J]
   double dissipated{};         ///< energy dissipated by the dashpots [J]
@@ -45,8 +45,8 @@ struct TransientResult
   double stopped_at{};  ///< time at which the integration failed [s]
   std::vector<TransientRow> rows;
   double window_lowest{};   ///< least value of the largest force over all steps of the window [N]
-  double window_highest{};  ///< largest value over the window [N]
-  double window_mean{};     ///< mean value over the window [N]
+  double window_highest{};  ///< greatest value of the largest force over the window [N]
+  double window_mean{};     ///< mean of the largest force over the window [N]
   StepCounts counts;
   double solve_time{};          ///< computing time [s]
   std::vector<double> tooth_x;  ///< x of each tooth at the end [m]
@@ -76,7 +76,7 @@ struct QuasiStaticSetup
   double tolerance{};
 };
 
-/// Error of a quantity of the ring in equilibrium, compared with the dynamic ring.
+/// Difference of a quantity between the dynamic ring and the ring in equilibrium.
 struct DynamicError
 {
   double size{};  ///< root mean square of the quantity in equilibrium, to which relative errors refer

@@ -36,10 +36,10 @@ struct LifeTrial
 {
   UnitVariation variation;
   DriveAgeing::Life life;
-  std::vector<LifeForecast> forecasts;  ///< empty if the life did not end
+  std::vector<LifeForecast> forecasts;  ///< forecasts of the life; empty if the life did not end
 };
 
-/// How often an 80 % interval contained the truth.
+/// Number of forecasts, and number of those whose 80 % interval contained the truth.
 struct Coverage
 {
   int forecasts{};

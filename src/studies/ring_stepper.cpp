@@ -250,7 +250,7 @@ namespace
 class AdaptiveRingStepper : public RingStepper
 {
 public:
-  /// `tolerance` > 0 [m].
+  /// `tolerance`: largest error of a tooth's position in one step, > 0 [m].
   AdaptiveRingStepper(DynamicRing& ring, const RungeKuttaTableau& tableau, const SolverParameters& solver,
                       double tolerance)
     : ring_(ring)

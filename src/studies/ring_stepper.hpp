@@ -41,7 +41,7 @@ class RingStepper
 public:
   virtual ~RingStepper() = default;
 
-  /// Advances by one step, with the assignment of teeth to spaces at its start. On failure the motion does not change.
+  /// Advances by one step, and assigns the teeth to spaces at its start. On failure the motion does not change.
   virtual bool step(RingMotion& motion, double length) noexcept = 0;
 
   const StepCounts& counts() const noexcept { return counts_; }

@@ -72,7 +72,7 @@ TEST_F(Assessed, FewerWindowsThanAnotherLevelTakesAreNoVerdict)
     EXPECT_EQ(assessment.windows_here, here);
     EXPECT_EQ(assessment.windows_needed, 5);
     EXPECT_EQ(whyNotJudged(assessment),
-              "too few windows: a verdict needs 5 at one operating point, has " + std::to_string(here));
+              "too few windows: a verdict needs 5 at one operating point, but has " + std::to_string(here));
   }
   EXPECT_EQ(windows(1).state, AssessmentState::ASSESSED);
   EXPECT_GE(assessor_.assessment().level, HealthLevel::WARN);
@@ -86,7 +86,7 @@ TEST_F(Assessed, ReferenceOfTooFewWindowsSaysHowManyItHasAndAWholeOneServesAChec
   given.setReference(assessor_.baseline().bins());
   const Assessment& assessment = given.update(joint_.nextWindow());
   EXPECT_EQ(assessment.state, AssessmentState::NO_REFERENCE);
-  EXPECT_EQ(whyNotJudged(assessment), "the healthy reference needs 8 windows at this operating point, has 6");
+  EXPECT_EQ(whyNotJudged(assessment), "the healthy reference needs 8 windows at this operating point, but has 6");
   windows(LEARNING - 6);
   Assessor once(shippedParameters({ "indicators.evidence_windows=1" }));
   once.setReference(assessor_.baseline().bins());

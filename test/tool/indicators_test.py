@@ -104,7 +104,7 @@ class Indicators(tool.ToolTest):
         judged = ["indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml"]
         done = self.run_tool(*judged)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("faulty.csv: too few windows: a verdict needs 5 at one operating point, has 3", done.stderr)
+        self.assertIn("faulty.csv: too few windows: a verdict needs 5 at one operating point, but has 3", done.stderr)
         self.assertRegex(done.stdout, r"state +too few windows\nlevel +not judged\n")
         self.assertRegex(done.stdout, r"furthest off +kinematic_error\nits deviation +[1-9][0-9.]+ spreads\n")
         # A check-up that is made once is judged by its window.
@@ -409,10 +409,10 @@ class Life(tool.ToolTest):
                        "--baseline", "b.yaml")
         # Too few windows to be called sound; and two of one operating point are no reference.
         short = self.write("short.csv", recording(line_after=0.0, seconds=7.0))
-        self.fail_with(1, ["short.csv: too few windows: a verdict needs 5 at one operating point, has 3"], "remaining",
-                       short, *options, "--hours", 1e6, "--baseline", "b.yaml")
+        self.fail_with(1, ["short.csv: too few windows: a verdict needs 5 at one operating point, but has 3"],
+                       "remaining", short, *options, "--hours", 1e6, "--baseline", "b.yaml")
         self.succeed("indicators", short, *options, "--save-baseline", "few.yaml")
-        self.fail_with(1, ["new.csv: the healthy reference needs 8 windows at this operating point, has 3\n",
+        self.fail_with(1, ["new.csv: the healthy reference needs 8 windows at this operating point, but has 3\n",
                            "spalled.csv: the healthy reference needs 8"], "remaining", new, spalled, *options,
                        "--baseline", "few.yaml")
 

@@ -43,7 +43,7 @@ struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
   static constexpr std::size_t MAX_ALTERNATIVES = 3;
-  static constexpr double SET = 0.9;  ///< sum of cause's and alternatives' probabilities that ends the list [-]
+  static constexpr double SET = 0.9;  ///< sum of probabilities at which the list of alternatives ends [-]
 
   std::int64_t stamp{};     ///< end of the last window [ns]
   std::uint64_t windows{};  ///< number of completed windows

@@ -18,7 +18,7 @@ struct SignatureSet;
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms difference for a drive like the twin, in the indicator's unit; 1e30: not known
-  double share{};  ///< additional rms over the difference of drive and twin (of a line: of its signal's lines) [-]
+  double share{};  ///< further rms difference over |drive - twin| (of a line: over that of its signal's lines) [-]
   double freedom{ 1.0 };  ///< degrees of freedom of the estimates `deviation` and `share` [-]
 };
 
@@ -48,8 +48,8 @@ double loadStep(const Parameters& parameters) noexcept;
 /// and four numbers of the payload. These four are the constant part of the load, the coefficients of its sine and
 /// cosine of the output angle, and the inertia. They do not depend on the path.
 constexpr std::size_t PLACES = 7;
-/// Number of covariates with a separate slope in each class: temperature and its square come first. Classes that differ
-/// only in temperature share the slopes of the other covariates.
+/// Number of covariates, temperature and its square, that have a separate slope in each class. Classes that differ only
+/// in temperature share the slopes of the other covariates.
 constexpr std::size_t OWN_PLACES = 2;
 using Place = std::array<double, PLACES>;
 using PlaceSquares = std::array<Place, PLACES>;  ///< products of each two covariates, as a square matrix
@@ -82,8 +82,8 @@ struct Reference
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums of products of differences, of an indicator and of its covariates (Place). The sums are over all windows, or
-/// pairs of windows, that determined the indicator.
+/// Sums of products of differences: of an indicator, of its covariates (Place), and of both. The sums are over all
+/// windows, or pairs of windows, that determined the indicator.
 struct IndicatorSums
 {
   int count{};
@@ -99,7 +99,7 @@ struct ReferenceSums
   std::array<double, INDICATOR_COUNT> means{};
   std::array<Place, INDICATOR_COUNT> mean_places{};
   PlaceSquares places{};  // over all windows
-  /// Products of two indicators over all windows, as the rows of a lower triangle.
+  /// Sums of products of each two indicators' differences over all windows, as the rows of a lower triangle.
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
 
@@ -159,7 +159,7 @@ struct Deviation
 {
   double expected{};
   double spread{};
-  /// Deviation as a normal deviate: a standard normal variable is as unlikely beyond this value. NaN: not compared.
+  /// Deviation as a normal deviate: a standard normal variable exceeds it with equal probability. NaN: not compared.
   double score{ std::numeric_limits<double>::quiet_NaN() };
   double threshold_factor{};  ///< magnitude of the deviation over the deviation at the threshold of the score [-]
   double freedom{};           ///< degrees of freedom of deviation / spread, v' of Baseline [-]
@@ -188,7 +188,7 @@ struct WindowResidual
   std::array<double, INDICATOR_COUNT> sound{};
   /// differences from the reference; if isFreeAmplitude, transformed by amplitudeChange
   std::array<double, INDICATOR_COUNT> difference{};
-  std::array<double, INDICATOR_COUNT> own{};                                ///< diagonal of D; 0: not compared
+  std::array<double, INDICATOR_COUNT> own{};                                ///< variances D; 0: not compared
   std::array<std::array<double, COMMON_CAUSES>, INDICATOR_COUNT> common{};  ///< rows of F
   double freedom{};               ///< degrees of freedom of the reference's spreads, v of Baseline [-]
   double pattern_freedom{};       ///< degrees of freedom of a pattern of scalars, v' of Baseline [-]
@@ -250,7 +250,7 @@ class Baseline
 {
 public:
   static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
-  /// Least number of windows for a spread, and least value of indicators.baseline_windows.
+  /// Least number of windows from which a spread is estimated, also the least value of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
   /// `signatures`: set with the errors of carried references and the causes that have patterns.
@@ -267,7 +267,7 @@ public:
                          Deviations& deviations) noexcept;
 
   double threshold() const noexcept { return threshold_; }  ///< threshold of |score| [-]
-  Deviation pattern(double student) const noexcept;         ///< deviation, with score, of a pattern's Student t
+  Deviation pattern(double student) const noexcept;         ///< deviation of a pattern with this Student's t
   double patternThreshold() const noexcept { return pattern_threshold_; }  ///< threshold of the score of a pattern [-]
   const WindowResidual& residual() const noexcept { return residual_; }    ///< residual in the last window's class
   const OperatingBin& bin() const noexcept { return bin_; }                ///< class of the last window
@@ -275,8 +275,8 @@ public:
   const std::vector<LearnedSums>& sums() const noexcept
   {
     return sums_;
-  }                                                           ///< by bin; empty if setReference set the reference
-  int windowsHere() const noexcept { return windows_here_; }  ///< windows learned, or compared since reset
+  }                                                           ///< sums of each class; empty after setReference
+  int windowsHere() const noexcept { return windows_here_; }  ///< number of windows learned, or compared since reset
   /// Number of windows that the reference of a class needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }  ///< whether setReference set the reference, which has no sums then
@@ -303,9 +303,9 @@ private:
   struct Average
   {
     double difference{};
-    double relative_square{};  // c^2
-    double scatter_square{};   // w^2
-    double weight{};           // k
+    double relative_square{};  // c^2 of the law above
+    double scatter_square{};   // w^2 of the law above
+    double weight{};           // k of the law above
   };
 
   /// Factors and terms that the variance of a difference has in addition to the reference's variance.

@@ -63,7 +63,7 @@ constexpr auto FEATURE_COUNT = static_cast<std::size_t>(Feature::COUNT);
 /// Largest deviation within a group of indicators.
 struct FeatureScore
 {
-  double score{};             ///< signed score; > 0 for a phase-locked line; 0: not compared [-]
+  double score{};             ///< score with its sign; never < 0 for a line; 0: not compared [-]
   double threshold_factor{};  ///< Deviation::threshold_factor of the indicator [-]
   std::size_t indicator{};    ///< index of the indicator with the largest deviation
   bool compared{};
@@ -122,11 +122,11 @@ constexpr bool isOfRobot(std::size_t number)
   return number - FIRST_OF_ROBOT < ROBOT_NUMBERS;
 }
 
-/// Changes of friction by load and lag by a fault, for a robot with any gear in any motion.
+/// Changes of the lag and of the friction by load, over their sound values, by a fault in a robot with any gear.
 struct RobotSignature
 {
   Cause cause;
-  double severity;  ///< 0 ... 1 [-]
+  double severity;  ///< severity of the fault, 0 ... 1 [-]
   std::array<double, ROBOT_NUMBERS> share;
 };
 
@@ -142,9 +142,9 @@ constexpr MotionKind ANY_MOTION{ 0.0, 0.0 };
 struct Signature
 {
   Cause cause;
-  double severity;  ///< 0 ... 1 [-]
+  double severity;  ///< severity of the fault, 0 ... 1 [-]
   MotionKind motion;
-  std::array<double, SIGNATURE_SIZE> change{};  ///< in the indicators' units, or as a share [-] if isShare
+  std::array<double, SIGNATURE_SIZE> change{};  ///< changes in the indicators' units, or shares [-] if isShare
 };
 
 /// One signature, or several that occur together. The first one is the signature of the cause; null: no signature.
@@ -157,15 +157,15 @@ struct SignatureSet
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   std::string gear;                           ///< name of the gear, for the user
-  double number_error{};                      ///< r in the law of CauseSearch [-]
-  double motion_error{};                      ///< m in the law of CauseSearch [-]
-  double line_error{};                        ///< l in the law of CauseSearch [-]
-  double evidence_weight{};                   ///< b_0 in the law of CauseSearch [-]
-  double misfit_weight{};                     ///< w_1 in the law of CauseSearch [-]
+  double number_error{};                      ///< relative error of each value of a signature, r of CauseSearch [-]
+  double motion_error{};                      ///< further relative error in unlike motions, m of CauseSearch [-]
+  double line_error{};                        ///< share of a sound line that a fault changes, l of CauseSearch [-]
+  double evidence_weight{};                   ///< factor on the evidence, b_0 of CauseSearch [-]
+  double misfit_weight{};                     ///< part of this factor that no misfit lowers, w_1 of CauseSearch [-]
   double severity_error{};                    ///< relative error of a severity estimated by the signatures [-]
   double severity_misfit{};                   ///< additional relative error of the severity if no signature fits [-]
-  std::vector<Signature> signatures;          ///< with the values of `of_robots`
-  std::vector<RobotSignature> of_robots;      ///< by cause, in ascending order of severity
+  std::vector<Signature> signatures;          ///< signatures of the gear, with the values of `of_robots`
+  std::vector<RobotSignature> of_robots;      ///< signatures of robots by cause, in ascending order of severity
   std::array<bool, SIGNATURE_SIZE> fitted{};  ///< values that the signatures contain; the search ignores the others
   std::array<double, SCALAR_COUNT>
       sound{};  ///< scalar indicators of the sound drive in the check-up, in their units; NaN: not known
@@ -206,7 +206,7 @@ private:
 /// Probability and severity of each cause, given the signals of a window.
 struct CausePosterior
 {
-  /// Probability of each cause, given that the drive is not sound; entry NONE: no fault with a signature [-].
+  /// Probability of each cause, given that the drive is not sound [-]. NONE: the cause is no fault with a signature.
   std::array<double, CAUSE_COUNT> probability{};
   std::array<double, CAUSE_COUNT> severity{};            ///< mean severity of each fault, if it is the cause [-]
   std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of the severity [-]

@@ -13,10 +13,10 @@ struct Indicator
 /// Indicators that the twin computes in each step from the true angles and torques of its model.
 struct MotionIndicators
 {
-  Indicator transmission_ratio;   ///< over the last motor turn [-]
+  Indicator transmission_ratio;   ///< motor travel over output travel in the last turn of the motor [-]
   double torsion{};               ///< motor angle / nominal ratio - output angle [rad]
   Indicator torsional_stiffness;  ///< slope of joint torque over torsion [N.m/rad]
   Indicator efficiency;           ///< output power over input power [-]
-  Indicator kinematic_error;      ///< peak to peak over the last motor turn [rad]
+  Indicator kinematic_error;      ///< peak to peak of the torsion in the last turn of the motor [rad]
 };
 }  // namespace hjt

@@ -63,7 +63,7 @@ constexpr std::size_t index(Line line)
   return static_cast<std::size_t>(line);
 }
 
-using LineOrders = std::array<double, LINE_COUNT>;  ///< [1/turn of the motor]
+using LineOrders = std::array<double, LINE_COUNT>;  ///< cycles of each line per turn of the motor
 
 /// Cycles of each line per turn of the motor.
 ///
@@ -101,7 +101,7 @@ enum class ScalarIndicator : std::size_t
   COUNT
 };
 
-/// Signal whose spectrum contains the lines.
+/// Signals in which the amplitudes of the lines are measured.
 enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
@@ -129,12 +129,12 @@ constexpr std::size_t indexOf(ScalarIndicator indicator)
 {
   return static_cast<std::size_t>(indicator);
 }
-constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< only for lines with hasLine
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< index; only for lines with hasLine
 {
   return line < FIRST_LOADED ? SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line :
                                LOADED_BLOCK + line - FIRST_LOADED;
 }
-constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< only for hasLine and isPhaseLocked
+constexpr std::size_t cosineIndex(LineSignal signal, std::size_t line)  ///< index; needs hasLine and isPhaseLocked
 {
   return line < FIRST_LOADED ? amplitudeIndex(signal, 0) + FIRST_LOADED + 2 * line :
                                LOADED_BLOCK + LOADED_COUNT + 2 * (line - FIRST_LOADED);
@@ -164,7 +164,7 @@ struct OperatingPoint
   double direction{};      ///< share of the travel forward minus the share of the travel back: -1 ... 1 [-]
   double load{};           ///< magnitude of the load torque; NaN: not known [N.m]
   double temperature{};    ///< temperature of the drive; NaN: not measured [degC]
-  double load_constant{};  ///< part of the load torque that does not depend on the output angle; NaN: unknown [N.m]
+  double load_constant{};  ///< part of the load torque that is equal at all output angles; NaN: not known [N.m]
   double load_sine{};      ///< factor of sin(output angle) in the load torque; NaN: load not known [N.m]
   double load_cosine{};    ///< factor of cos(output angle) in the load torque; NaN: load not known [N.m]
   double inertia{};        ///< inertia of drive and load at the joint, estimated from the motor torque [kg.m^2]
@@ -177,7 +177,7 @@ struct SignalIndicators
 
   double operator[](ScalarIndicator indicator) const noexcept { return values[indexOf(indicator)]; }
   double amplitude(LineSignal signal, Line line) const noexcept { return values[amplitudeIndex(signal, index(line))]; }
-  double phase(LineSignal signal, Line line) const noexcept;  ///< of the line as a cosine; NaN: not phase-locked [rad]
+  double phase(LineSignal signal, Line line) const noexcept;  ///< phase as a cosine; NaN: not phase-locked [rad]
 
   std::int64_t stamp{};     ///< end of the window [ns]
   std::uint64_t windows{};  ///< number of windows completed since start or reset, with this one; 0: none yet

@@ -39,7 +39,7 @@ struct InsertionResult
   double wave_generator_force_max{};  ///< largest force of the wave generator on a tooth [N]
   double wave_generator_force_min{};  ///< least force of the wave generator on a tooth [N]
   double wave_generator_force_sum{};  ///< sum of the forces of the wave generator over all teeth [N]
-  int teeth_in_contact{};             ///< teeth that touch the wave generator
+  int teeth_in_contact{};             ///< number of teeth that touch the wave generator
   double tension_min{};               ///< least tension of the rim [N]
   double tension_max{};               ///< largest tension of the rim [N]
   double radius_major_axis{};         ///< radius of tooth 0, at the major axis [m]
@@ -75,7 +75,7 @@ struct StiffnessRow
   double wave_generator_torque{};
   double housing_torque{};            ///< torque of the housing on the flexspline, through its cup [N.m]
   double cup_rotation{};              ///< mean rotation of the teeth from rest [rad]
-  int teeth_loaded{};                 ///< teeth that carry mesh force
+  int teeth_loaded{};                 ///< number of teeth that carry mesh force
   double mesh_force_max{};            ///< largest mesh force of a tooth [N]
   double wave_generator_force_sum{};  ///< sum of the wave generator's forces over the teeth [N]
   /// force on each ball of the bearing [N]; empty unless contact.support is single balls
@@ -83,9 +83,10 @@ struct StiffnessRow
   ToothStress stress;  ///< stresses of the flexspline
   ToothTable teeth;    ///< every tooth
 };
-/// Returns one row for each torque, in the order of `torques`. Each solve starts without load, so that the rows do not
-/// depend on each other. `wave_generator_angle` [rad] and `torques` [N.m] may have any finite value. Torques act at the
-/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Thesis 7.1 to 7.5.
+/// Returns one row for each torque, in the order of `torques`. Each solve starts without load, so the rows do not
+/// depend on each other. `wave_generator_angle` [rad] and `torques` [N.m] may be any finite values. Torques act at the
+/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Source: thesis 7.1 to
+/// 7.5.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 

@@ -45,8 +45,8 @@ struct ToothStress
   /// Shear stress by place, constant around the circumference [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// Stress cycle of one tooth over a turn at a place, computed from all teeth at this instant. The two are equal for
-  /// equal teeth. `place` < STRESS_PLACES.
+  /// Stress cycle at a place: the range over all teeth at this instant, which for equal teeth is also the range of one
+  /// tooth over a turn. `place` < STRESS_PLACES.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());

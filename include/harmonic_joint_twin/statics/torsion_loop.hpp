@@ -19,7 +19,7 @@ struct TorsionPoint
 /// Torsion of the gear under a slow load cycle, with friction of the teeth and a locked wave generator.
 struct TorsionLoop
 {
-  SolveStatus status;                ///< the numbers are valid if ok()
+  SolveStatus status;                ///< status of the solves; the numbers are valid if ok()
   std::vector<TorsionPoint> points;  ///< points from +amplitude to -amplitude and back
   double hysteresis{};               ///< width of the loop at zero load [rad]
   /// angle between the middles of the loop at the positive and the negative lost motion torque [rad]
