@@ -43,8 +43,8 @@ SIGNALS = {"time": "time", "output_angle": "actual_q", "target_angle": "target_q
 SHARES = ("load_friction", "lag_ripple", "lag_order_1", "lag_order_2", "lag_order_4")
 HIDDEN = 5.0                     # standard errors of a share
 ROBOT_SECTION = """
-# What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
-# then, as shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. By `lab/run faults_seen --fit`.
+# Changes of friction by load and lag of a robot in closed loop, for any gear in any motion: [cause, severity, then, as
+# shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. Source: `lab/run faults_seen --fit`.
 robots:
 """
 CUP = (33.2e3, 56.1e3, 65.2e3)   # [N.m/rad]
@@ -202,7 +202,7 @@ def write_shares(path, shares):
     text = path.read_text(encoding="utf-8")
     rows = "".join(f"  - [{', '.join([kind, *(str(float(f'{number:.3g}')) for number in (severity, *numbers))])}]\n"
                    for (kind, severity), numbers in shares.items() if numpy.any(numbers))
-    text = re.sub(r"\n# What faults change in friction by load.*?(?=\n# A row each)", "", text, flags=re.DOTALL)
+    text = re.sub(r"\n# Changes of friction by load and lag.*?(?=\n# A row each)", "", text, flags=re.DOTALL)
     path.write_text(text.replace("\n# A row each", ROBOT_SECTION + rows + "\n# A row each"), encoding="utf-8")
 
 

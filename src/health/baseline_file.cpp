@@ -160,8 +160,8 @@ void writeBaseline(const std::string& path, const Baseline& baseline, bool less_
     }
     return text;
   };
-  text << "# Healthy indicators by operating point. speed: octave of the motor's speed; load: in steps of load_step; "
-          "temperature: in steps of 10 K.\n"
+  text << "# Healthy indicators by operating point. speed: octave of the motor's speed; load: in steps of load_step;\n"
+          "# temperature: in steps of 10 K.\n"
           "# place: mean covariates of the windows: temperature, its square, mean magnitude of the load, constant part "
           "of the load,\n# its factors of sine and cosine of the output angle, inertia.\n"
           "# information: information on the slopes over the covariates. tail: 1 / degrees of freedom of scalars and "

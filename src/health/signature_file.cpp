@@ -395,43 +395,43 @@ namespace
 {
 constexpr const char* KINEMATICS = " kinematics ";  // name of the motion in rows that are calculated without runs
 constexpr const char* HEAD = R"(# SPDX-License-Identifier: BSD-3-Clause
-# What faults change in the health indicators of a gear, found in the twin's own runs
+# Changes of the health indicators of a gear by faults, computed with runs of the twin
 # (docs/indicators.md, "Signatures").
 # Written by `joint_twin signatures`.
 format: )";
 constexpr const char* ERRORS = R"(
-# Errors by the law of docs/indicators.md [-]: of each number of a signature on another gear, and in a motion of another
-# kind; share of the sound drive's lines that a fault of severity 1 changes; weight of the evidence, and the share of it
-# that is left where no signature fits; of the severity, and more where no signature fits.
+# Constants of the likelihood in docs/indicators.md [-]. number, motion: relative error of a change, additional error in
+# unlike motions. line: share of a sound line that a fault changes. weight, misfit: factor on the evidence, least share
+# of this factor. severity, severity_misfit: relative error of the severity, additional error if no signature fits.
 errors:
 )";
 constexpr const char* INDICATORS = R"(
-# Indicators that the signatures are known for, in the order of the columns below, and their units.
+# Indicators in the columns of 'signatures', in their order, with their units.
 indicators:
 )";
 constexpr const char* SOUND = R"(
-# Values of the sound drive in the first motion, in these units.
+# Values of the indicators of the sound drive in the first motion, in these units.
 sound:
 )";
 constexpr const char* CARRIED = R"(
-# What the indicators of a sound drive less a model's differ by from one motion to another: [deviation in the
-# indicator's unit, share of what drive and model differ by, degrees of freedom]. Not known of what is missing here.
+# How an indicator of a sound drive minus a model's differs between two motions: [rms in the indicator's unit,
+# additional rms over |drive - model|, degrees of freedom]. For indicators that are missing here this is not known.
 carried:
 )";
 constexpr const char* OCCURRENCE = R"(
-# How often a cause occurs, 1 ... 10 [-]: FMECA of C. Costantino, Politecnico di Torino, 2021, Table 3.7. What is
-# missing here is not rated.
+# How often a cause occurs, 1 ... 10 [-]: FMECA of C. Costantino, Politecnico di Torino, 2021, Table 3.7. Causes
+# that are missing here are not rated.
 occurrence:
 )";
 constexpr const char* ROBOTS = R"(
-# What faults change in friction by load and lag of a robot in closed loop, of any gear in any motion: [cause, severity,
-# then, as shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. By `lab/run faults_seen --fit`.
+# Changes of friction by load and lag of a robot in closed loop, for any gear in any motion: [cause, severity, then, as
+# shares of the sound values, load_friction, lag_ripple, lag_order_1, _2, _4]. Source: `lab/run faults_seen --fit`.
 robots:
 )";
 constexpr const char* SIGNATURES = R"(
-# A row each: cause, motion, speed of the motor [rad/s] and share of travel one way less the other [-] (magnitudes; 0 0:
-# any motion), severity [-], then the change of each of the indicators; of stiffness, lost motion and loop, and of
-# friction by thicker grease, as a share of the sound value [-].
+# A row each: cause, motion, magnitudes of the motor's speed [rad/s] and of the share of travel forward minus that back
+# [-] (0 0: any motion), severity [-], then the change of each indicator. Changes of stiffness, lost motion and loop,
+# and of friction by thicker grease, are shares of the sound value [-].
 signatures: |
 )";
 
