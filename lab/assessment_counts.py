@@ -49,7 +49,7 @@ def header(page, table):
         estimate = 1.0 + float(rows[kind][size].split(" ± ")[0]) / severity
         name = kind.upper()
         lines += [f"constexpr double {name}_FOUND = {seen}.0;", f"constexpr double {name}_RUNS = {of}.0;",
-                  f"constexpr double {name}_ESTIMATE = {estimate:.2f};  // over the truth"]
+                  f"constexpr double {name}_ESTIMATE = {estimate:.2f};  // mean estimated over true severity [-]"]
     mean, spread = map(float, rows["all"][size].split(" ± "))
     causes, alarms = total(rows[kind][right] for kind in KINDS)
     values = {"ALARMS": alarms, "RIGHT_CAUSES": causes, "IN_SETS": total(rows[kind][in_set] for kind in KINDS)[0],
@@ -57,8 +57,8 @@ def header(page, table):
               "SOUND_ALARMS": int(check_ups.group(2)) + sum(int(row[5]) for row in runs)}
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
     estimate, deviation = severity + mean, float(rows["all"][stated])
-    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // over the estimate, of all kinds",
-              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // likewise"]
+    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // spread over mean of estimated severities [-]",
+              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // mean stated deviation over mean severity [-]"]
     return HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n"
 
 
