@@ -57,8 +57,8 @@ def header(page, table):
               "SOUND_ALARMS": int(check_ups.group(2)) + sum(int(row[5]) for row in runs)}
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
     estimate, deviation = severity + mean, float(rows["all"][stated])
-    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // spread over mean of estimated severities [-]",
-              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // mean stated deviation over mean severity [-]"]
+    lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // spread over mean of estimates [-]",
+              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // stated deviation over this mean [-]"]
     return HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n"
 
 

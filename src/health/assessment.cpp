@@ -77,7 +77,7 @@ const Assessment& Assessor::update(const SignalIndicators& indicators, const Sig
 
 void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
-  advance(searchLength());  // finishes the search of the window before
+  advance(searchLength());  // finishes the search for the cause of the last window
   judge(indicators, model);
   if (!is_searching_)
   {

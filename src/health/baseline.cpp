@@ -130,7 +130,8 @@ Baseline::Baseline(const Parameters& parameters, std::shared_ptr<const Signature
   pattern_threshold_ = normalQuantile(rate / std::max(patterns, 1.0));
   const double count = std::hypot(TWO_PI / parameters.sensors.motor_counts_per_turn / nominalRatio(parameters.gear),
                                   TWO_PI / parameters.sensors.output_counts_per_turn);
-  const std::array<double, 3> unit{ 1.0, count, count * nominalRatio(parameters.gear) / TWO_PI };  // by FloorUnit
+  const std::array<double, 3> unit{ 1.0, count,
+                                    count * nominalRatio(parameters.gear) / TWO_PI };  // size of each FloorUnit
   for (const ScalarRow& row : SCALARS)
   {
     floor_[indexOf(row.indicator)] = row.floor * unit[static_cast<std::size_t>(row.floor_unit)];

@@ -449,7 +449,7 @@ private:
 
   std::int64_t window_;  // [ns]
   Forgetting forgetting_;
-  std::int64_t age_{};  // since start or reset [ns]
+  std::int64_t age_{};  // time since start or reset [ns]
   PowerMean motor_;
   PowerMean joint_;
 };
@@ -617,7 +617,7 @@ public:
 private:
   double nominal_ratio_;
   bool started_{};
-  std::int64_t stamp_{};  // of the last sample [ns]
+  std::int64_t stamp_{};  // stamp of the last sample [ns]
   double torsion_{};      // [rad]
   TurnWindow turn_;
   StiffnessEstimate stiffness_;

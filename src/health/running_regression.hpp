@@ -52,7 +52,7 @@ private:
   Eigen::VectorXd squares_;  // sum y^2
   Eigen::VectorXd scale_;    // scales of the columns at the last fit
   Eigen::MatrixXd factor_;
-  Eigen::MatrixXd inverse_;  // of the factor
+  Eigen::MatrixXd inverse_;  // inverse of the factor
   Eigen::VectorXd inverse_diagonal_;
   Eigen::MatrixXd coefficients_;
   Eigen::VectorXd spread_;  // standard deviation of each target's residuals

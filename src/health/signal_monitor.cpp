@@ -15,8 +15,8 @@ namespace
 constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel after which a speed has weight 1/e in the mean speed [rad]
 constexpr double MEAN_TIME = 0.5;                // time after which a speed has weight 1/e in the mean speed [s]
 constexpr double LARGEST_RIPPLE = 12e-3;         // largest ripple of the measured speed in a calm motion [rad]
-constexpr double SETTLING_TIME = 0.1;            // time after a motion that was not calm [s]
-constexpr std::int64_t WAITING_TIME = 20000000;  // time before a motion that is not calm [ns]
+constexpr double SETTLING_TIME = 0.1;            // time after uneven motion until the motion counts as calm [s]
+constexpr std::int64_t WAITING_TIME = 20000000;  // time before uneven motion that does not count as calm [ns]
 // After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is about six times as
 // large as the ringing, and at least ten times as large as the ripple by lines.
 constexpr double RINGING_SHARE = 0.15;      // ringing over the ripple [-]

@@ -369,7 +369,7 @@ private:
       sum += value_weight * value;
       weight += value_weight;
     }
-    double value() const noexcept { return sum / weight; }  // NaN: nothing was added
+    double value() const noexcept { return sum / weight; }  // NaN if no value was added
     double sum{};
     double weight{};
   };
@@ -426,8 +426,8 @@ private:
 
   const double ratio_;
   const OutputParameters output_;
-  const double output_inertia_;  // of the load and the circular spline [kg.m^2]
-  const double motor_inertia_;   // of the motor and the wave generator, at the output [kg.m^2]
+  const double output_inertia_;  // inertia of load and circular spline [kg.m^2]
+  const double motor_inertia_;   // inertia of motor and wave generator, converted to the output [kg.m^2]
   const IndicatorParameters parameters_;
   OrderTracker tracker_;
   std::optional<BearingSlip> slip_;
@@ -451,7 +451,7 @@ private:
   std::array<Waiting, 128> waiting_;
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
-  double ringing_{};        // amplitude after the last change of speed [rad]
+  double ringing_{};        // amplitude of the ringing after the last change of speed [rad]
   double turn_travel_{};    // travel since turn_ was read last [rad]
   bool tracked_{};          // whether the last fit separated all lines, so that the residual is valid
   double residual_mean_{};  // slow mean of the residual [rad]

@@ -17,7 +17,7 @@ double greaseAgeing(const LifeParameters& parameters, double temperature)
 double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth)
 {
   constexpr double POISSON = 0.3;
-  constexpr double DEEPEST = 0.95;  // share of the rim; the factors of the strip diverge at 1
+  constexpr double DEEPEST = 0.95;  // largest depth as a share of the rim; the factors of the strip diverge at 1
   constexpr double NOTCH = 4.5;
   constexpr auto TOOTH_SPACE = static_cast<std::size_t>(StressPlace::TOOTH_SPACE);
   const GearParameters& gear = parameters.gear;

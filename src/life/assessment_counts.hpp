@@ -18,6 +18,6 @@ constexpr double RIGHT_CAUSES = 13.0;
 constexpr double IN_SETS = 13.0;
 constexpr double SOUND_RUNS = 144.0;
 constexpr double SOUND_ALARMS = 0.0;
-constexpr double ESTIMATE_SPREAD = 0.37;   // spread over mean of estimated severities [-]
-constexpr double STATED_DEVIATION = 0.50;  // mean stated deviation over mean severity [-]
+constexpr double ESTIMATE_SPREAD = 0.37;   // spread over mean of estimates [-]
+constexpr double STATED_DEVIATION = 0.50;  // stated deviation over this mean [-]
 }  // namespace hjt::assessment_counts

@@ -65,7 +65,7 @@ struct Scale
   }
 
   Entries by;
-  double filling_factor{ 1.0 };  // see DriveAge
+  double filling_factor{ 1.0 };  // DriveAge::filling_factor
 };
 }  // namespace
 
@@ -183,7 +183,7 @@ std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, cons
 DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours, double every, bool grease_changes,
                                     const std::function<void(double, const DriveAge&)>& visit) const
 {
-  constexpr double TOLERANCE = 1e-8;  // share of the limits
+  constexpr double TOLERANCE = 1e-8;  // error of a step, as a share of the limits
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
   Scale scale(parameters_, variation);

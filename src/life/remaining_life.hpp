@@ -56,7 +56,7 @@ public:
   /// `ends_at`: factor at which the distribution is truncated, because a larger one would have ended the drive.
   void given(const WearTrend& trend, double spread, double ends_at) noexcept
   {
-    constexpr double REACH = 6.5;  // standard deviations
+    constexpr double REACH = 6.5;  // range of the table, in standard deviations of the logarithm
     is_read_ = trend.isKnown() && spread > 0.0;
     spread_ = spread;
     ends_at_ = ends_at;
@@ -250,7 +250,7 @@ private:
   struct Drive
   {
     UnitVariation variation;
-    std::array<double, STRESS_PLACES> strength;  // logarithms over the median
+    std::array<double, STRESS_PLACES> strength;  // logarithms of the strengths over the median
     double log_weight;  // logarithm of the probability that bearing and flexspline last, with or without a spall
     double rate_ahead;  // standard normal deviate of the future rate of wear
     double flank_end;   // equivalent flank wear (LoadFeedback) at the end of life [m]
@@ -275,8 +275,8 @@ private:
   FaultScaleParameters fault_scale_;
   BearingLife bearing_;
   std::vector<Point> points_;
-  double flank_limit_{};           // flank limit of the present call, see FutureLoad [m]
-  double interface_limit_{};       // interface limit of the present call, see FutureLoad [m]
+  double flank_limit_{};           // FutureLoad::flank_limit of the current call [m]
+  double interface_limit_{};       // FutureLoad::interface_limit of the current call [m]
   FactorTable flank_factors_;      // working memory
   FactorTable interface_factors_;  // working memory
   std::vector<Drive> drives_;      // working memory

@@ -283,7 +283,7 @@ private:
   AbsoluteEncoder output_encoder_;
   std::size_t delay_;              // delay of the readings [steps]
   std::size_t window_;             // window of the velocities [steps]
-  std::vector<Instant> instants_;  // ring of the last
+  std::vector<Instant> instants_;  // ring buffer of the last steps
   std::size_t newest_{};
   std::size_t count_{};  // number of stored instants
 };

@@ -25,7 +25,7 @@ struct CatalogueSize
   double size;
   std::array<double, 2> breakpoints;       // [N.m]
   std::array<double, 3> stiffness_of_50;   // [N.m/rad]
-  std::array<double, 3> stiffness;         // at ratio 80 and more [N.m/rad]
+  std::array<double, 3> stiffness;         // at ratios of 80 or more [N.m/rad]
   double starting_torque, no_load_torque;  // [N.m]
 };
 
@@ -65,7 +65,7 @@ constexpr double TORSION_ERROR = 1e-4;  // largest relative error of a fitted to
 constexpr int TORSION_TRIALS = 30;
 constexpr int FITTED_BITS = 12;          // number of correct bits of a parameter that is fitted to a torque
 constexpr double LEAST_OF_START = 1e-3;  // least tried value over the start value of the fit [-]
-constexpr int CATALOGUE_RATIO = 100;     // ratio of the catalogue's friction
+constexpr int CATALOGUE_RATIO = 100;     // ratio for which the catalogue states friction
 constexpr const char* ORIGIN = "gear";
 constexpr const char* PRELOAD = "bearing.race_preload";
 constexpr const char* VISCOSITY = "bearing.viscosity";

@@ -124,7 +124,7 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
 {
   requireAtLeast("positions", positions, 1);
   constexpr int MAX_ITERATIONS = 30;
-  constexpr double ENOUGH = 1e-6;  // relative change of the load
+  constexpr double ENOUGH = 1e-6;  // relative change of the load that ends the iteration
   LossMeter meter(parameters, positions);
   Breakaway result;
   result.starting = breakaway(meter, 0.0);

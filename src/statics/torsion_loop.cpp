@@ -77,8 +77,8 @@ TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, d
   loop.status = insertUnderLoad(ring, 0.0, 0.0);
   const double unloaded = ring.position().output_angle;
   const double unloaded_rotation = ring.forces().of<CupTorsion>().rotation;
-  std::vector<TorsionPoint> up;    // increasing load, torque ascending
-  std::vector<TorsionPoint> down;  // decreasing load
+  std::vector<TorsionPoint> up;    // points with increasing load
+  std::vector<TorsionPoint> down;  // points with decreasing load
   std::vector<Eigen::Vector2d> rotations;
   for (int i = 0; i <= steps && loop.status.ok(); ++i)
   {

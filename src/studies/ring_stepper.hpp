@@ -156,7 +156,7 @@ private:
 
   CyclicSolver teeth_;
   std::array<bool, 2> held_{};
-  Columns border_;     // couplings of the teeth and the angles
+  Columns border_;     // couplings of the teeth with the two angles
   Columns condensed_;  // teeth_^-1 border_
   Eigen::Matrix2d corner_inverse_{ Eigen::Matrix2d::Identity() };
   Eigen::VectorXd scratch_;

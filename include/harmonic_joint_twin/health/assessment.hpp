@@ -125,8 +125,8 @@ private:
   const double error_factor_;
   Baseline baseline_;
   Deviations deviations_;
-  Assessment assessment_;  // of the last window; its cause is missing during the search
-  Assessment settled_;     // of the last window, with its cause
+  Assessment assessment_;  // assessment of the last window, without a cause during the search
+  Assessment settled_;     // assessment of the last window whose search is finished
   CausePatterns patterns_;
   CauseSearch cause_search_;
   OperatingPoint point_;  // operating point of the window whose cause is being searched

@@ -74,7 +74,7 @@ struct Reference
   double within{};           // half the mean square of differences of successive windows; 0: not known
   double relative_square{};  // mean square of relativeErrors over the windows; 0: not known [-]
   double scale{};            // mean magnitude with the subtracted model included, in the indicator's unit
-  bool fitted{};             // fitReference has set slopes and common causes
+  bool fitted{};             // whether fitReference set slopes and common causes
   double ridge{};            // lambda of fitReference: prior information on the slopes, in windows at covariate 1 [-]
   double slopes_freedom{};   // degrees of freedom that the slopes use [-]
   Place slopes{};            // slopes over the covariates, in the indicator's unit
@@ -98,7 +98,7 @@ struct ReferenceSums
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
   std::array<double, INDICATOR_COUNT> means{};
   std::array<Place, INDICATOR_COUNT> mean_places{};
-  PlaceSquares places{};  // over all windows
+  PlaceSquares places{};  // of the covariates, over all windows
   /// Sums of products of each two indicators' differences over all windows, as the rows of a lower triangle.
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
