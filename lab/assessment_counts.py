@@ -58,7 +58,7 @@ def header(page, table):
     lines += [f"constexpr double {name} = {value}.0;" for name, value in values.items()]
     estimate, deviation = severity + mean, float(rows["all"][stated])
     lines += [f"constexpr double ESTIMATE_SPREAD = {spread / estimate:.2f};   // spread over mean of estimates [-]",
-              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // stated deviation over this mean [-]"]
+              f"constexpr double STATED_DEVIATION = {deviation / estimate:.2f};  // stated deviation over mean [-]"]
     return HEAD + "\n".join(lines) + "\n}  // namespace hjt::assessment_counts\n"
 
 

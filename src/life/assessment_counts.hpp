@@ -19,5 +19,5 @@ constexpr double IN_SETS = 13.0;
 constexpr double SOUND_RUNS = 144.0;
 constexpr double SOUND_ALARMS = 0.0;
 constexpr double ESTIMATE_SPREAD = 0.37;   // spread over mean of estimates [-]
-constexpr double STATED_DEVIATION = 0.50;  // stated deviation over this mean [-]
+constexpr double STATED_DEVIATION = 0.50;  // stated deviation over mean [-]
 }  // namespace hjt::assessment_counts
