@@ -88,7 +88,7 @@ private:
 /// Stiffness, lost motion and hysteresis under a load that swings, over one window.
 ///
 /// The estimate smooths the measured torsion and adds inertia to the torque: x = F x_0,  T = F T_0 + J F d^2(psi)/dt^2
-/// where  F          filter of TwiceSmoothed
+/// where  F         filter of TwiceSmoothed
 ///        x_0, T_0  measured torsion [rad], torque at one end of the gear [N.m]
 ///        J, psi    inertia between that end and the gear [kg.m^2], its angle [rad]
 /// Law:   x = a - h p(T) + q p(theta) + T / K1 + c clamp(T, -T0, T0) + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0)

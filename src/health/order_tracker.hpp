@@ -108,9 +108,8 @@ struct LineFit
 
 /// Estimates amplitude and phase of lines at known orders, in all LineSignals together.
 ///
-/// Law:   y(t) = c . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  weighted least squares
-/// over
-///        the samples of a window
+/// Law:   y(t) = c . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  weighted least
+///        squares over the samples of a window
 /// where  y      a LineSignal;  a, b, c  coefficients;  theta  motor angle [rad];  o_k  order [1/turn]
 ///        m      1 for a line that is not in proportion to the load, so that it is the line at the mean load. Otherwise
 ///               T / T_r minus its mean or, for a part that lags, d T / T_r minus its mean

@@ -206,8 +206,8 @@ enum class AssessmentState : std::uint8_t
 };
 
 /// Indicators of a sound joint by operating point, given or learned from the first windows at each operating point. The
-/// class compares the trimmed mean of the last indicators.evidence_windows windows of an operating point with them. The
-/// trimmed mean omits a fifth of the windows at either end, at least one of three or more (docs/indicators.md).
+/// class compares the trimmed mean of the last indicators.evidence_windows windows with the reference of the operating
+/// point. The mean omits a fifth of the windows at either end, at least one of three or more (docs/indicators.md).
 ///
 /// Law:   S^2 = p (r + 1/(e n)) + max(p (1 - r), w^2) / k + R^2 + q^2 + (p + R^2) (z - z_0)' L (z - z_0) / e
 ///        t = g mean(x - m - b (z - z_0)) / S,   g^2 = 1 / (1 - 2 y^2 a / k)
@@ -241,8 +241,8 @@ enum class AssessmentState : std::uint8_t
 /// than many windows.
 /// The thresholds are normal quantiles. All indicators share half of indicators.false_alarm_rate (two-sided), and the
 /// patterns of all causes share the other half (one-sided, Bonferroni). Without patterns the indicators share all of
-/// it. A window near the edge of its class counts for the class beyond the edge if its class has too few windows. A
-/// window is not compared if its payload or load adds more than OTHER_PAYLOAD_WIDENING (p + R^2) to S^2.
+/// it. A window near the edge of its class counts for the class beyond the edge if its own class has too few windows.
+/// A window is not compared if its payload or load adds more than OTHER_PAYLOAD_WIDENING (p + R^2) to S^2.
 ///
 /// Learning opens at most indicators.baseline_classes classes. The constructor allocates 0.2 MB for each. A given
 /// reference needs 19 kB for each class, and its memory replaces that of the learned classes.
