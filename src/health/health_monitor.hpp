@@ -377,9 +377,8 @@ private:
 /// The efficiency is not valid
 /// - during the first `health.averaging_time`,
 /// - near standstill, with a mean power below 0.1 W,
-/// - if the power does not flow steadily in one direction: both means must have one sign, and each must be at least 90
-/// %
-///   of the mean magnitude of its power,
+/// - if the power does not flow steadily in one direction: the means must have equal signs, and each must be at least
+///   90 % of the mean magnitude of its power,
 /// - if the output power is more than 1 % larger than the input power, because a mass slows down.
 class EfficiencyEstimate
 {
@@ -396,7 +395,7 @@ public:
     joint_ = {};
   }
 
-  /// `elapsed` [ns]; powers [W].
+  /// Adds a sample. `elapsed`: time since the last sample [ns]; `motor_power`, `joint_power`: P_m, P_j [W].
   void update(std::int64_t elapsed, double motor_power, double joint_power) noexcept
   {
     age_ += elapsed;

@@ -42,8 +42,7 @@ double speedSpread(const std::vector<LineSample>& samples)
   return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
 }
 
-/// For each slip, square of a line's Fourier sum over the noise near the line. `sums`: Fourier sums in each BIN, slip
-/// 0.
+/// For each slip, square of a line's Fourier sum over the noise near the line. `sums`: Fourier sums in BINs, slip 0.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
   std::vector<Complex> turned(sums.size());

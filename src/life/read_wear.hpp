@@ -106,8 +106,7 @@ struct ReadWear
   double lost_motion_limit{ HUGE_VAL };  ///< measured lost motion at which the drive's use ends [rad]
 };
 
-/// Trends of wear from readings and nominal use. `reference_hours`: age of the drive when its reference was learned
-/// [h].
+/// Trends of wear from readings and nominal use. `reference_hours`: hours of use at the time of the reference [h].
 inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const FaultScaleParameters& fault_scale,
                            double reference_hours)
 {

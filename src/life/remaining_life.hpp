@@ -283,8 +283,7 @@ private:
   std::vector<End> ends_;          // working memory
 };
 
-/// Wear of the nominal drive by a duty cycle in closed form, with ageing grease and the loads per turn of the new
-/// drive.
+/// Wear of the nominal drive by a duty cycle in closed form, with grease that ages and the loads of the new drive.
 class NominalUse
 {
 public:

@@ -20,8 +20,7 @@ namespace hjt
 {
 /// Creep of the outer race of the wave generator's bearing in the rim, and the slip between race and rim.
 ///
-/// The lobes press the race on the rim, and the race rolls in the rim. If the race were held, its surface would slip
-/// with
+/// The lobes press the race on the rim, and the race rolls in the rim. If it were held, its surface would slip with
 ///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, per wave generator angle]
 /// where  l, psi_i'  contact.slip_lever [m]; rate of the chord's tilt at tooth i against the turning of the wave [-]
 ///        r, eps_i   bore radius [m]; strain of the rim at tooth i [-] (the race does not stretch)
@@ -100,8 +99,7 @@ public:
   /// @throws ParameterError if the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
-  /// Load of one turn at a load torque [N.m] that `cover` computed and a wear [m]. Wear beyond its limit counts as the
-  /// limit.
+  /// Load of one turn at a load torque [N.m] that `cover` computed and a wear [m]. Larger wear counts as its limit.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
   /// Largest error of the interpolation, compared with the tooth model halfway between stages, over the largest value

@@ -93,7 +93,7 @@ struct WearTrends
 {
   WearTrend flank;
   WearTrend interface;
-  double flank_depth{ 1.0 };          ///< wear depth at severity 1 [m]
+  double flank_depth{ 1.0 };          ///< flank wear depth at severity 1 [m]
   double reading_at_end{ HUGE_VAL };  ///< reading of the flanks at which the lost motion ends the drive's use [-]
 };
 

@@ -115,8 +115,7 @@ private:
   std::uint32_t seed_;
 };
 
-/// Sensors of a joint: the encoders of motor and output, and the motor's current, from which the drive estimates a
-/// torque.
+/// Sensors of a joint: encoders of motor and output, and the current, from which the drive estimates the torque.
 ///
 /// Law:   a' = a + e sin a + e_2 sin 2 a + e_4 sin 4 a + s n
 ///                                   angle that an encoder resolves into counts          [rad]

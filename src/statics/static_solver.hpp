@@ -38,8 +38,7 @@ public:
   {
   }
 
-  /// Calls `visit(output speed over motor speed)` at each position in equilibrium; stops at a position without
-  /// equilibrium.
+  /// Calls `visit(output speed over motor speed)` at each position in equilibrium. Stops if there is no equilibrium.
   template <class Visit>
   void under(double load, Visit&& visit)
   {

@@ -135,8 +135,7 @@ public:
     loaded_ += quasi_static != 0.0 ? 1 : 0;
   }
 
-  /// Error over all values. `among_loaded`: only values other than zero count, for quantities that are zero on most
-  /// teeth.
+  /// Error over all values. `among_loaded`: only values other than zero count, because most teeth have the value zero.
   DynamicError error(bool among_loaded = false) const noexcept
   {
     const double n = static_cast<double>(among_loaded ? loaded_ : count_);

@@ -241,8 +241,7 @@ namespace
 ///
 /// Proportional-integral control of the step length (Gustafsson 1991; Hairer and Wanner IV.2):
 ///   next length / this length = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),  limited to 0.2 ... 5
-/// where   e_n   error estimate of the accepted step n over the tolerance;  k   order of the estimate in the step
-/// length
+/// where   e_n   error estimate of the accepted step n over the tolerance;  k   order of the estimate
 ///
 /// A step with e_n > 1 is repeated with a shorter length, and the next step is not longer. The forces have a kink where
 /// a tooth begins or ends contact. The class does not detect such events, but there the estimate increases and the

@@ -164,8 +164,7 @@ private:
 
 /// Coefficients of a diagonally implicit, stiffly accurate Runge-Kutta method: the last stage is the end of the step.
 ///
-/// All implicit stages have the diagonal gamma, so that one factored matrix serves them. The first stage may be
-/// explicit.
+/// All implicit stages have the diagonal gamma and share one factored matrix. The first stage may be explicit.
 struct RungeKuttaTableau
 {
   int order;
@@ -174,7 +173,7 @@ struct RungeKuttaTableau
   std::vector<std::vector<double>> before;  ///< weights of the earlier stages, one row for each stage [-]
   std::vector<double> times;                ///< times of the stages, as shares of the step [-]
   std::vector<double> error;                ///< weights of the embedded error estimate; empty: none [-]
-  int error_power;                          ///< order of the estimate in the step length; 0: none
+  int error_power;                          ///< order of the error estimate in the step length; 0: no estimate
 
   int stages() const { return static_cast<int>(times.size()); }
   /// Weight of stage i in the step, from the last row.
@@ -259,7 +258,7 @@ public:
   void accept() noexcept;
   /// Largest error of a tooth's position in the last attempt, estimated by the embedded method [m].
   double errorEstimate() const noexcept { return error_; }
-  int errorPower() const noexcept { return tableau_.error_power; }  ///< order of the estimate in the step length
+  int errorPower() const noexcept { return tableau_.error_power; }  ///< order of the error estimate
 
 private:
   void begin(const Eigen::VectorXd& speeds) noexcept;

@@ -107,7 +107,7 @@ public:
   const Assessment& assessment() const noexcept { return settled_; }
   const Baseline& baseline() const noexcept { return baseline_; }
   const SignatureSet& signatures() const noexcept { return *signatures_; }
-  /// Number of steps of a search, for `advance`.
+  /// Number of signatures that `advance` must go through to finish a search.
   std::size_t searchLength() const noexcept { return cause_search_.signatures(); }
   const Deviations& deviations() const noexcept { return deviations_; }  ///< deviations of the last window
 

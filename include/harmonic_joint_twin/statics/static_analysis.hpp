@@ -85,8 +85,7 @@ struct StiffnessRow
 };
 /// Returns one row for each torque, in the order of `torques`. Each solve starts without load, so the rows do not
 /// depend on each other. `wave_generator_angle` [rad] and `torques` [N.m] may be any finite values. Torques act at the
-/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Source: thesis 7.1 to
-/// 7.5.
+/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Source: thesis 7.1-7.5.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 

@@ -14,8 +14,7 @@ namespace hjt
 /// Names of the places, in the order of StressPlace. Laws and sources: docs/life.md.
 constexpr std::array<const char*, STRESS_PLACES> STRESS_PLACE_NAMES{ "tooth space", "transition", "flange" };
 
-/// Nominal stress (without notch factor) at one place of the flexspline over a turn of the wave generator at constant
-/// load.
+/// Nominal stress (without notch factor) at a place of the flexspline over a turn at constant load.
 struct StressCycle
 {
   double lowest{};   ///< least normal stress [Pa]
