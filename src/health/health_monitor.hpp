@@ -497,10 +497,10 @@ private:
 /// Torsional stiffness of the drive: slope of the joint torque over the torsion.
 ///
 /// Law:   T = T_0 + K tau,  recursive least squares
-/// The weight of a sample is the time since the last sample, and decays exponentially with health.averaging_time.
 /// where  T    joint torque                          [N.m]
 ///        tau  torsion                               [rad]
 ///        K    torsional stiffness                   [N.m/rad]
+/// The weight of a sample is the time since the last sample, and decays exponentially with health.averaging_time.
 /// The stiffness is valid if the torque spanned `health.stiffness_torque_span` in the current or the previous window.
 class StiffnessEstimate
 {
