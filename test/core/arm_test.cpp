@@ -390,5 +390,95 @@ TEST(SetPoints, NoArmIsToldWhatItCannotDo)
   EXPECT_THAT(errors(2.9, 6e8), testing::HasSubstr("set point 2: it is 6.0e+8 s after the first"));
   EXPECT_THAT(errors(0.0, 0.0), testing::HasSubstr("set point 2: the time does not increase"));
 }
+
+/// Set points of the elbow at the angles x(t), 8 ms apart; the other joints stand.
+template <class Angle>
+std::vector<ArmSetPoint> elbowAlong(int rows, const Angle& x)
+{
+  std::vector<ArmSetPoint> points;
+  for (int k = 0; k < rows; ++k)
+  {
+    points.push_back({ 0.008 * k, std::vector<JointMotion>(6) });
+    points.back().joints[2].position = x(points.back().time);
+  }
+  return points;
+}
+
+TEST(SetPoints, MissingRatesAreDifferencesAndAJointRestsAtTheEndsIfItCan)
+{
+  const auto slow = [](double t) { return 0.3 + 0.05 * t + 4.0 * t * t; };
+  std::vector<ArmSetPoint> points = elbowAlong(5, slow);
+  fillRates(points, false, false);
+  for (std::size_t k : { 1U, 2U, 3U })
+  {
+    EXPECT_NEAR(points[k].joints[2].velocity, 0.05 + 8.0 * points[k].time, 1e-12) << k;
+  }
+  EXPECT_EQ(points[0].joints[2].velocity, 0.0);  // from 0.08 rad/s within 8 ms: 10.2 rad/s^2 would be too much
+  EXPECT_NEAR(points[4].joints[2].velocity, 0.05 + 8.0 * 0.028, 1e-12);
+  EXPECT_NEAR(points[2].joints[2].acceleration, 8.0, 1e-9);
+  EXPECT_NEAR(points[0].joints[2].acceleration, (0.05 + 8.0 * 0.008) / 0.008, 1e-9);
+  EXPECT_EQ(points[2].joints[1].velocity, 0.0);
+
+  points = elbowAlong(5, slow);
+  points[2].joints[2].velocity = 7.0;
+  fillRates(points, true, false);
+  EXPECT_EQ(points[2].joints[2].velocity, 7.0);
+  EXPECT_NEAR(points[1].joints[2].acceleration, 7.0 / 0.016, 1e-9);
+}
+
+TEST(SetPoints, JitterOfTheStampsIsFoundByTheSpeeds)
+{
+  const auto x = [](double t) { return 0.5 * t; };
+  std::vector<ArmSetPoint> even = elbowAlong(50, x);
+  for (ArmSetPoint& point : even)
+  {
+    point.joints[2].velocity = 0.5;
+  }
+  const auto stamped = [&](double jitter, double scale)
+  {
+    std::vector<ArmSetPoint> points = even;
+    for (std::size_t k = 0; k < points.size(); ++k)
+    {
+      points[k].time = scale * points[k].time + (k % 2 == 1 ? jitter : 0.0);
+    }
+    return points;
+  };
+  std::vector<ArmSetPoint> points = stamped(0.002, 1.0);
+  EXPECT_NEAR(straightenTimes(points), 0.002, 1e-12);
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    EXPECT_NEAR(points[k].time, even[k].time, 1e-12);
+  }
+  // Jitter below a tenth of a step does not count; speeds that are not the rates of the angles tell nothing.
+  for (std::vector<ArmSetPoint> kept : { stamped(0.0007, 1.0), stamped(0.002, 1.05), stamped(0.0, 1.0) })
+  {
+    const double time = kept[9].time;
+    EXPECT_EQ(straightenTimes(kept), 0.0);
+    EXPECT_EQ(kept[9].time, time);
+  }
+}
+
+TEST(SetPoints, SpeedsOfAnotherUnitOrSignAreRefused)
+{
+  const ArmDescription arm = readArmDescription(SHIPPED);
+  const auto complaint = [&](double factor, double way)
+  {
+    std::vector<ArmSetPoint> points = elbowAlong(40, [&](double t) { return way * t / 0.312; });
+    for (ArmSetPoint& point : points)
+    {
+      point.joints[2].velocity = factor * way / 0.312;
+    }
+    return complaintOf([&] { requireRates(points, arm, "FILE"); });
+  };
+  for (const double sound : { 0.55, 1.0, 1.9 })
+  {
+    EXPECT_EQ(complaint(sound, 0.3), "");
+  }
+  EXPECT_EQ(complaint(57.3, 0.3), "FILE: elbow: its speeds are 57.3 times the rate of its angles, allowed: 0.5 ... 2 "
+                                  "(are they degrees/s?)");
+  EXPECT_THAT(complaint(-1.0, 0.3), testing::HasSubstr("is their sign wrong?"));
+  EXPECT_THAT(complaint(0.4, 0.3), testing::HasSubstr("are they missing?"));
+  EXPECT_EQ(complaint(57.3, 0.09), "");  // too little motion to tell
+}
 }  // namespace
 }  // namespace hjt
