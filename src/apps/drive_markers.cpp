@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Markers of a twin's drive for rviz from its contact forces. The exaggeration can change at run time.
+// Node that draws a twin's drive in rviz, from the contact forces that the twin publishes.
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -39,7 +39,7 @@ std::string readText(const ros::NodeHandle& node, const std::string& name, const
   return value;
 }
 
-/// Refuses a value that is not finite: it becomes the present one. dynamic_reconfigure checks the range.
+/// Replaces a value that is not finite by the present value. dynamic_reconfigure has checked the range.
 void refuseUnlessFinite(double& value, double present, const char* name)
 {
   if (!std::isfinite(value))

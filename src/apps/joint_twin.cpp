@@ -19,7 +19,7 @@
 #ifdef HJT_COMPLETE_TOOL
 namespace hjt
 {
-const char* toolHelp();  ///< output of joint_twin_complete --help, from cmake/tool_help.cmake
+const char* toolHelp();  ///< output of joint_twin_complete --help; cmake/tool_help.cmake generates the function
 }
 
 namespace
@@ -66,10 +66,10 @@ int main(int argc, char** argv)
 {
   hjt::CommandLine line(
       "joint_twin",
-      "Tooth-level digital twin of a robot joint's harmonic drive. All quantities in SI units, angles "
-      "in rad.");
+      "Digital twin of a robot joint's harmonic drive with the force on every tooth. All quantities are in SI units, "
+      "angles in rad.");
   line.addSubcommands();
-  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a size limit then fails as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes then fails like a write to a full disk
   try
   {
     const int code = run(line, argc, argv);
@@ -78,7 +78,7 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
-    if (hjt::interruptSignal() != 0)  // an interrupt causes errors that are not the user's
+    if (hjt::interruptSignal() != 0)  // an interrupt can cause errors that are not the user's
     {
       std::cerr << "joint_twin: interrupted\n";
       return hjt::EXIT_BY_SIGNAL + hjt::interruptSignal();

@@ -60,8 +60,8 @@ bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
   return false;
 }
 
-/// Whether the present master knows all topics of this node. A master that came while the node started knows only the
-/// last ones. Without a response the answer is true, because connections continue without a master.
+/// Whether the present master knows all topics of this node. A master that was replaced during the node's start knows
+/// only the last topics. If no master responds, the result is true, because connections continue without a master.
 bool isKnownToMaster()
 {
   XmlRpc::XmlRpcValue arguments;
@@ -82,9 +82,9 @@ bool isKnownToMaster()
 /// know the node's topics; a new start of the node sets its parameters and registrations again.
 bool waitForShutdownOrNewMaster()
 {
-  constexpr int LOOKS = 100;  // number of polls for one question to the master
+  constexpr int LOOKS = 100;  // number of polls of ros::ok() between two questions to the master
   constexpr int MISSES =
-      2;  // number of successive negative answers; a starting or ending master may cause a single one
+      2;  // successive negative answers that show a new master; a master that starts or ends may cause a single one
   const ros::WallDuration period(0.05);
   int misses = 0;
   for (int look = 1; ros::ok() && misses < MISSES; ++look)
@@ -132,7 +132,7 @@ public:
 private:
   static Twin watchedTwin(const Parameters& parameters)
   {
-    // In simulated time the twin waits for its surface, so that a replay always gives equal bits.
+    // In simulated time the twin waits for its surface, so that every replay of a bag gives bit-identical results.
     Twin twin(parameters, nodeSurfaceSource(!ros::Time::isSimTime()));
     twin.watchSignals(true);
     return twin;
@@ -141,7 +141,8 @@ private:
   bool reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
   {
     response.success = loop_.reset();
-    response.message = response.success ? "the twin restarts at the current instant" : "the loop does not respond";
+    response.message =
+        response.success ? "the twin restarts at the current instant" : "the loop of the twin does not respond";
     return true;
   }
 
@@ -210,7 +211,7 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   hjt::readDefaultConfiguration(hjt::configurationDirectory("").string(), shipped);
   warnOfParameters(found, node.getNamespace(), { shipped });
   hjt::ParameterMap map = hjt::readParameterServer(node.getNamespace());
-  // If nobody has loaded a configuration, the node uses the default one. A loaded one is complete.
+  // A configuration that a launch file has loaded is complete. Without one, the node uses the shipped configuration.
   if (found.areGiven(map))
   {
     map.merge(shipped);
@@ -244,7 +245,7 @@ std::vector<std::string> itemsOf(const std::string& list)
   return items;
 }
 
-/// Reference figures of each joint from the reports of the sound arm. @throws InputError if a report has no such data.
+/// Reference of each joint, from reports about the arm when it was sound. @throws InputError if a report lacks it.
 std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::ArmDescription& arm,
                                            const std::vector<hjt::Parameters>& parameters)
 {
@@ -261,14 +262,14 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
     joints.push_back(hjt::readSoundJoint(directories, parameters[i]));
     if (joints.back().own.is_unjudged)
     {
-      ROS_WARN_STREAM("The reference did not judge the friction of " << arm.joints[i].short_name
-                                                                     << "; the twin is used instead");
+      ROS_WARN_STREAM("The reference does not judge the friction of "
+                      << arm.joints[i].short_name << ". The expected friction of this joint is that of the twin");
     }
   }
   return joints;
 }
 
-/// Parameters of every drive, each changed by those of this node; also written to the parameter server.
+/// Parameters of every drive: `maps`, changed by the parameters of this node. Writes them to the parameter server too.
 std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt::ParameterMap& overrides,
                                       std::vector<hjt::ParameterMap> maps)
 {
@@ -291,15 +292,16 @@ std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt:
     {
       hjt::takeInertiaInLoad(drive);
     }
-    ROS_INFO_STREAM(joint.short_name << " is " << drive.joint.name << ": " << drive.gear.teeth_flexspline << " teeth, "
+    ROS_INFO_STREAM(joint.short_name << " is " << drive.joint.name << ": flexspline with "
+                                     << drive.gear.teeth_flexspline << " teeth, gain "
                                      << drive.telemetry.torque_per_current << " N.m/A, " << drive.input.temperature
                                      << " degC");
   }
   return parameters;
 }
 
-/// Candidates for the check of the arm's type: shipped arms with the joints of this one, each joint changed by the
-/// node's parameters; null if this arm is not among them, or its type is not to be checked.
+/// Candidates for the check of the arm's type: the shipped arms with joints like those of `arm`, each joint changed by
+/// the node's parameters. Null if the arm `name` is not among them.
 hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const std::string& name,
                                         const hjt::ParameterMap& overrides)
 {
@@ -335,13 +337,14 @@ bool inPlaceOfArm(const hjt::ParameterMap& overrides)
   if (mode == overrides.end())
   {
     throw hjt::ParameterError(
-        "input.mode of an arm is missing; torque, motion or observer are for use beside a robot, commands replaces it");
+        "input.mode of an arm is missing. With torque, motion or observer the node runs beside a robot, with commands "
+        "in place of the robot");
   }
   const auto* text = std::get_if<std::string>(&mode->second.value);
   return text != nullptr && *text == "commands";
 }
 
-/// Names the joints and the base frame as a driver with these affixes does.
+/// Gives the joints and the base frame the names that a driver with these affixes uses.
 void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm)
 {
   for (hjt::ArmJoint& joint : arm.joints)
@@ -351,7 +354,7 @@ void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm
   arm.base = affixes.prefix + arm.base;
 }
 
-/// Prefix or suffix of the joint names, which must give valid ROS names.
+/// Prefix or suffix of the joint names. @throws ParameterError if the resulting names are invalid in ROS.
 std::string affixOf(const ros::NodeHandle& node, const std::string& key)
 {
   XmlRpc::XmlRpcValue value;
@@ -370,7 +373,7 @@ std::string affixOf(const ros::NodeHandle& node, const std::string& key)
   if (!is_name)
   {
     throw hjt::ParameterError("~" + key + (affix.empty() ? "" : " = '" + affix + "'") +
-                              " must be a text of letters, digits, '_' and '/', a prefix beginning with a letter");
+                              " must be a text of letters, digits, '_' and '/'; a prefix must begin with a letter");
   }
   return affix;
 }
@@ -405,7 +408,7 @@ void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundPar
   std::vector<hjt::Parameters> parameters = drivesOf(arm, overrides, std::move(maps));
   if (parameters.front().input.mode == hjt::InputMode::COMMANDS)
   {
-    ROS_INFO_STREAM("input.mode is commands: in place of the arm, on "
+    ROS_INFO_STREAM("input.mode is commands: this node replaces the arm and publishes on "
                     << ros::names::resolve(hjt::topics::JOINT_STATES));
     nameAsInMessages(affixes, arm);
     hjt::addIdentifiedGains(identified, arm);
@@ -429,7 +432,7 @@ int main(int argc, char** argv)
   const hjt::FoundParameters found(argc, argv);
   ros::init(argc, argv, "joint_twin");
   hjt::shutDownOnSignals();
-  // Must outlive the try block: ROS and its console shut down with the last handle.
+  // The handle must outlive the try block, because ROS and its console shut down with the last handle.
   ros::NodeHandle node("~");
   try
   {

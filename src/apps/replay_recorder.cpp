@@ -56,7 +56,7 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 class TopicRecorder
 {
 public:
-  /// @param buffer size of the waiting messages [bytes].
+  /// @param buffer largest total size of the messages that wait for the disk [bytes].
   TopicRecorder(const std::set<std::string>& topics, const std::string& path, std::size_t buffer)
     : writer_(path), buffer_(buffer)
   {
@@ -85,7 +85,7 @@ public:
     {
       const auto text = [](const auto& lost) { return std::to_string(lost.second) + " of " + lost.first; };
       throw hjt::InputError("messages arrived faster than they could be written; lost messages: " +
-                            hjt::joined(lost_, ", ", text) + ". " + writer_.path() + " has all others");
+                            hjt::joined(lost_, ", ", text) + ". " + writer_.path() + " has all other messages");
     }
   }
 
@@ -110,7 +110,7 @@ private:
     arrived_.notify_one();
   }
 
-  /// Writes the waiting messages, or waits a moment if none waits. A message that arrives before the clock has started
+  /// Writes the waiting messages, or sleeps if no message waits. A message that arrives before the clock has started
   /// gets the first time of the clock. A twin that received the clock earlier can send such messages.
   void writeWaiting()
   {
@@ -176,10 +176,10 @@ int main(int argc, char** argv)
   unsigned buffer = 256;
   bool force = false;
   hjt::CommandLine line("replay_recorder",
-                        "Records the topics of a bag being played together with everything the twin publishes");
+                        "Records all topics of a bag that is being played, and all topics that the twin publishes");
   hjt::OptionTable& root = line.root();
   root.add("played", played_bag, "the bag being played").required().existingFile();
-  root.add("--output", output_bag, "the bag to write; empty: PLAYED_twin.bag in the folder of the one played");
+  root.add("--output", output_bag, "the bag to write; default: PLAYED_twin.bag in the folder of the played bag");
   root.add("--joint-namespace", twin_namespace, "ROS namespace of the twin's topics");
   root.add("--buffer", buffer,
            "size of the messages that may wait for the disk [MiB]; further messages are lost, counted and reported")

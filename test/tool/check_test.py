@@ -182,7 +182,7 @@ class Check(tool.ToolTest):
         for more in ((), ("--arm", "ur5")):
             found = self.check("short.bag", *more, exit_code=1)
             self.assertEqual((found["missing_joints"], found["load"]), (["wrist_3_joint"], "unknown"))
-        self.assertTrue(any("no effort of wrist_3_joint" in line for line in self.lines("short.bag", "--arm", "ur5")))
+        self.assertTrue(any("the effort of wrist_3_joint" in line for line in self.lines("short.bag", "--arm", "ur5")))
         self.fail_with(1, ["no messages on /states", "/joint_states"], "check", "short.bag", "--topic", "/states")
 
     def test_velocity_may_be_empty_and_a_temperature_is_found(self):

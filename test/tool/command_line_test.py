@@ -85,7 +85,8 @@ class Options(tool.ToolTest):
                 ("--steps: '0' is not within 1 ... 1e+08",
                  ["turn", "--load", "1", "--angle-range", "1", "--steps", "0"]),
                 ("--out: 'a.txt' must end in .bag or .csv", ["simulate", "--torque", "1", "--out", "a.txt"]),
-                ("--joint: '6' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or 0 ... 5",
+                ("--joint: '6' is not a joint; the joints are base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or 0 "
+                 "to 5",
                  ["import", "a.csv", "--joint", "6", "--out", "a.bag"]),
                 ("--format: foo not in {urdf,sdf,mjcf,fmu,fmu2}", ["export", "--format", "foo"]),
                 ("--train: At least 2 required but received 1", [*PAIR, "1"]),
@@ -138,7 +139,8 @@ class Options(tool.ToolTest):
     def test_help_shows_types_limits_and_defaults(self):
         column = "\n" + 30 * " "
         for arguments, parts in [
-                (["stiffness"], ["torsion under load, wave generator locked\nUsage: joint_twin stiffness [OPTIONS]\n",
+                (["stiffness"], ["torsion under load with the wave generator locked\n"
+                                 "Usage: joint_twin stiffness [OPTIONS]\n",
                                  "\nOptions:\n  -h,--help                   Print this help message and exit\n",
                                  f"\n  --torques FLOAT ... REQUIRED{column}loads on",
                                  "\n  --angle FLOAT=0             wave generator angle [rad]\n",

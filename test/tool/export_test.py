@@ -123,7 +123,7 @@ class Export(tool.ToolTest):
     def test_what_a_format_cannot_hold_stands_in_it(self):
         self.assertIn("Not in this format: stiffness in series", self.export("urdf"))
         for form in "urdf", "sdf", "mjcf":
-            self.assertIn("Not represented: friction by load and temperature", self.export(form))
+            self.assertIn("Not represented: effect of load and temperature on the friction", self.export(form))
 
     def test_any_name_makes_a_document(self):
         name = 'a<b> & "c" -- \'d\''

@@ -255,7 +255,7 @@ class Import(tool.ToolTest):
                             (good[:11] + [good[11][:40]], "too few columns")]:
             with self.subTest(part):
                 self.write("a.csv", "\n".join(lines) + "\n")
-                self.fail_with(1, ["a.csv:12: ", part, "a.bag is readable and contains the 10 rows before it"],
+                self.fail_with(1, ["a.csv:12: ", part, "a.bag is readable and contains the 10 rows before the error"],
                                "import", "a.csv", "--joint", 0, "--out", "a.bag", "--force", "--json")
                 self.assertEqual(len(tool.series(self.path("a.bag"), "/joint_twin/command")), 10)
                 self.assertFalse(os.path.exists(self.path("a.bag.active")))

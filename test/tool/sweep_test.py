@@ -100,7 +100,7 @@ class Sweep(SweepTest):
         self.assertNotIn(name, finished)
         self.write(f"killed/runs/{name}.12345678.part", "what it was at when it was killed")
         done = self.sweep("killed", "--jobs", 2)
-        self.assertIn(f"{len(finished)} were there", done.stderr)
+        self.assertIn(f"{len(finished)} already present", done.stderr)
         for name, written in finished.items():
             self.assertEqual(os.stat(os.path.join(runs, name)).st_mtime_ns, written)
         self.assertEqual(tree(self.path("killed")), tree(self.path("whole")))
@@ -206,7 +206,7 @@ class Sweep(SweepTest):
         self.write("plan.yaml", plan.replace("repeats: 3", "repeats: 1"))
         done = self.run_tool("sweep", "plan.yaml", "--out", "a")
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("4 runs done, 0 were there, 2 failed", done.stderr)
+        self.assertIn("4 runs done, 0 already present, 2 failed", done.stderr)
         rows = self.index("a")
         self.assertEqual([row["status"] for row in rows], ["ok", "failed", "ok", "failed"])
         self.assertIn("the solver found no equilibrium at 0.0", rows[1]["error"])
@@ -216,7 +216,7 @@ class Sweep(SweepTest):
             self.assertEqual(file.attrs["status"], "failed")
         done = self.run_tool("sweep", "plan.yaml", "--out", "a")  # nothing is left to do, and it still says so
         self.assertEqual(done.returncode, 1)
-        self.assertIn("0 runs done, 4 were there, 2 failed", done.stderr)
+        self.assertIn("0 runs done, 4 already present, 2 failed", done.stderr)
 
     def test_bad_plans_are_refused_before_anything_runs(self):
         self.write("steep.csv", "time,load\n0,0\n1,1e300\n")
@@ -331,7 +331,7 @@ class Sweep(SweepTest):
                         content[int(place * len(content))] ^= 0x10
                         with open(path, "wb") as file:
                             file.write(content)
-                    self.assertIn("3 runs done, 3 were there, 0 failed, 3 damaged ones done again",
+                    self.assertIn("3 runs done, 3 already present, 0 failed, 3 damaged and repeated",
                                   self.sweep(name).stderr)
                     self.assertEqual(tree(self.path(name)), before)
 

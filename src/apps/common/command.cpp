@@ -23,9 +23,9 @@ namespace hjt
 {
 struct CommandNode
 {
-  std::string name;  ///< full name, with those of the commands above it: "joint_twin life age"
+  std::string name;  ///< full name, which begins with the names of all parent commands: "joint_twin life age"
   std::string help;
-  std::string heading{};  ///< heading under which the command above lists it
+  std::string heading{};  ///< heading under which the help of the parent command lists this command
   std::string version{};
   OptionTable table{};
   std::list<CommandNode> subcommands{};
@@ -34,7 +34,7 @@ struct CommandNode
 
 namespace
 {
-/// Error in the command line; the text is for the user.
+/// Error in the command line, with a text for the user.
 struct UsageError : std::runtime_error
 {
   using std::runtime_error::runtime_error;
@@ -47,7 +47,7 @@ struct Request
   std::string text;  ///< text that is printed instead of running the command: help or version
 };
 
-constexpr int FIRST_COLUMN = 30;  // width of the first column
+constexpr int FIRST_COLUMN = 30;  // width of the help's first column [characters]
 
 void printRow(std::ostream& text, const std::string& label, const std::string& help)
 {
@@ -98,7 +98,7 @@ void printUsage(std::ostream& text, const CommandNode& command)
   text << (command.subcommands.empty() ? "\n" : " SUBCOMMAND\n");
 }
 
-/// Prints the arguments, then the groups of options in the order of their first ones.
+/// Prints the arguments, then the groups of options, ordered by the first option of each group.
 void printOptions(std::ostream& text, const CommandNode& command)
 {
   std::vector<std::string> groups;
@@ -222,7 +222,8 @@ const po::value_semantic* valuesOf(const Option& option)
   return new Values(option.commas || option.follows ? option.most : 1);
 }
 
-/// Splits the words into options with values, by Boost. Names must be complete; negative numbers are values.
+/// Splits the words of a command line into options with values. Boost does it. An abbreviated name is an error, and a
+/// negative number is a value.
 std::vector<po::option> split(CommandNode& command, const Words& words)
 {
   po::options_description known;
@@ -259,7 +260,7 @@ std::vector<po::option> split(CommandNode& command, const Words& words)
   }
 }
 
-/// Passes their values to the options. @returns the words that belong to none.
+/// Passes to each option its values. @returns the words that belong to no option.
 Words distribute(CommandNode& command, Words words)
 {
   std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));
@@ -288,7 +289,7 @@ Words distribute(CommandNode& command, Words words)
     }
     option->given = true;
     const std::size_t before = option->values.size();
-    const bool follow = found.original_tokens.size() > 1;  // the value follows the name, not an equals sign
+    const bool follow = found.original_tokens.size() > 1;  // the value is a separate word, not joined by '='
     for (const std::string& value : found.value)
     {
       if (follow && findOption(command, value) != nullptr)
@@ -406,7 +407,7 @@ void CommandLine::addSubcommands()
             { return std::pair(a->subject_, a->name_) < std::pair(b->subject_, b->name_); });
   for (const Subcommand* subcommand : all)
   {
-    // "life age" must come after "life".
+    // The sorting puts "life" before "life age", so the parent exists.
     const bool inner = subcommand->name_.find(' ') != std::string::npos;
     CommandNode& parent = inner ? root_->subcommands.back() : *root_;
     CommandNode& node = parent.subcommands.emplace_back();

@@ -12,7 +12,7 @@ namespace hjt
 {
 struct CommandNode;
 
-/// Groups of subcommands, in the order of the help.
+/// Groups of subcommands, in the order in which the help lists them.
 enum class Subject
 {
   GEAR,
@@ -29,7 +29,7 @@ class Subcommand
 public:
   using Run = std::function<int()>;  ///< returns the exit code
 
-  /// Declares a subcommand that has subcommands.
+  /// Declares a subcommand that has subcommands of its own.
   Subcommand(Subject subject, const char* name, const char* help)
     : Subcommand(subject, name, help, std::function<Run(OptionTable&)>())
   {
@@ -55,7 +55,7 @@ private:
   const Subject subject_;
   const std::string name_;
   const std::string help_;
-  const std::function<Run(OptionTable&)> declare_;  // empty if it has subcommands
+  const std::function<Run(OptionTable&)> declare_;  // empty if the subcommand has subcommands
 };
 
 class CommandLine
@@ -67,11 +67,10 @@ public:
   OptionTable& root();
   void addSubcommands();
 
-  /// Whether the command line has a subcommand of this program, or asks only for the version.
+  /// Whether the command line names a subcommand of this program, or only prints the version.
   static bool knows(int argc, char** argv);
 
-  /// Parses the command line. @returns the exit code if the process ends here: after help, version or an error, which
-  /// are printed.
+  /// Parses the command line. If this prints help, version or an error, the process ends. @returns the exit code then.
   std::optional<int> parse(int argc, char** argv);
 
   /// Runs the chosen subcommand. @returns its exit code.

@@ -24,12 +24,12 @@ void addCommonOptions(OptionTable& table, CommonOptions& options);
 /// Prints a warning on stderr for each inconsistent value of the gear.
 void printGearWarnings(const Parameters& parameters);
 
-/// Loads the parameters and prints these warnings. @throws ParameterError.
+/// Loads the parameters and prints the warnings of `printGearWarnings`. @throws ParameterError.
 Parameters loadGear(const ConfigurationOptions& options);
 
-/// Loads the parameters for an analysis. @throws ParameterError if a fault cannot act in it.
+/// Loads the parameters for an analysis. @throws ParameterError if a configured fault has no effect in this analysis.
 Parameters loadAnalysed(const ConfigurationOptions& options, Analysis analysis);
 
-/// Reports that there is no equilibrium for `what`, with the reason. @returns the exit code.
+/// Prints that the solver found no equilibrium for `what`, and the reason. @returns the exit code of the program.
 int notConverged(const std::string& what, const SolveStatus& status);
 }  // namespace hjt

@@ -7,14 +7,14 @@
 
 namespace hjt
 {
-/// Options of a library function on the command line.
+/// Options of a library function and of the command that calls it.
 template <class Options>
 struct Printed : Options
 {
-  bool json{};  ///< print the result as one document
+  bool json{};  ///< print the result as one JSON document
 };
 
-/// Adds the function's options and `--json`.
+/// Adds the options of the library function, and `--json`.
 template <class Options>
 void declarePrinted(OptionTable& table, Printed<Options>& options)
 {
@@ -22,13 +22,13 @@ void declarePrinted(OptionTable& table, Printed<Options>& options)
   addJsonOption(table, options.json);
 }
 
-/// Watch with progress and notices on stderr, for a command that writes no file: a signal ends its process at once.
+/// Watch that prints progress and notices on stderr. A signal ends the process at once: the command writes no file.
 Watch readingWatch();
-/// Watch like `readingWatch`; during its lifetime signals stop the function instead of the process.
+/// Watch like `readingWatch`, but during its lifetime a signal ends the library function instead of the process.
 Watch consoleWatch();
 
-/// Passes the result of FUNCTION to PRINT, which returns the exit code. A signal ends FUNCTION. PARTS: an incomplete
-/// result is printed too.
+/// Passes the result of FUNCTION to PRINT, which returns the exit code. A signal ends FUNCTION. If PARTS is true, PRINT
+/// also receives an incomplete result.
 template <auto FUNCTION, auto PRINT, bool PARTS, class Options>
 int runWatched(const Options& given)
 {

@@ -23,8 +23,7 @@ int printArmRun(const PrintedArmRun& options, const ArmRun& found)
   report.lines.insert(report.lines.begin(), { "output", "", options.out });
   printReport(options.json, report.lines, report.tables);
   warnOf(found.counters);
-  warn(found.feedback_limited,
-       "times the controller of a joint reached its limit (feedback in the limits of the arm's file)");
+  warn(found.feedback_limited, "times the controller of a joint reached its limit (limits.feedback in the arm's file)");
   warn(found.stop ? 1 : 0, "protective stop; from then on the brakes hold the arm");
   const int written = reportWritten(options.out, options.json);
   return written == EXIT_DONE && found.stop ? EXIT_STOPPED : written;

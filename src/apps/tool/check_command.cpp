@@ -25,7 +25,7 @@ bool stops(const std::vector<RecordingFinding>& findings)
                      [](const RecordingFinding& finding) { return finding.stops.has_value(); });
 }
 
-/// Text of a percentage without a power of ten.
+/// Text of a percentage, never in scientific notation.
 std::string percentText(double share)
 {
   const double percent = 100.0 * share;
@@ -36,11 +36,11 @@ std::string textOfLoad(const CheckedArm& arm)
 {
   if (!arm.missing.empty())
   {
-    return "unknown: no angle or no effort of " + joined(arm.missing);
+    return "unknown: the recording lacks the angle or the effort of " + joined(arm.missing);
   }
   if (arm.taken.empty())
   {
-    return "unknown: no arm in config/arms has these joints; give your own by --arm (docs/arm.md)";
+    return "unknown: no arm in config/arms has these joints; name the file of your own arm with --arm (docs/arm.md)";
   }
   return std::string("computed from the angles of all joints, the arm's links and the payload") +
          (arm.found.has_load ? "; the recording has a load too" : "");
@@ -55,16 +55,17 @@ std::string textOfArm(const RecordingOptions& options, const CheckedContents& co
   }
   if (arm.taken.empty())
   {
-    return "not known; joints: " + joined(contents.named);
+    return "not known; the recording has the joints " + joined(contents.named);
   }
-  std::string text = arm.taken + names + ", of " + std::to_string(arm.fitting.size()) + " arms that fit (--arm)";
+  std::string text = arm.taken + names + ", chosen from " + std::to_string(arm.fitting.size()) +
+                     " arms that fit (--arm names another)";
   const auto left = [](const ArmFit& fit) { return percentText(fit.left); };
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
   const auto other =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm != arm.taken; });
-  text += ": with the load that fits best it leaves " + left(*taken) + " of the currents";
-  text += other == arm.ranked.end() ? "" : ", " + other->arm + " " + left(*other);
+  text += ": its best load leaves " + left(*taken) + " of the currents unexplained";
+  text += other == arm.ranked.end() ? "" : ", that of " + other->arm + " " + left(*other);
   const std::vector<std::string> alike = arm.alike();
   return text + (alike.empty() ?
                      "" :
@@ -82,11 +83,11 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
     return contents.usable.empty() || names_them ?
                "none: " +
                    (contents.named.empty() ? std::string() :
-                    contents.has_angles    ? "the messages name joints but their effort is empty; " :
-                                             "the messages name joints but their position is empty; ") +
+                    contents.has_angles    ? "the messages name joints, but their effort is empty; " :
+                                             "the messages name joints, but their position is empty; ") +
                    "the angles have to be recorded as position, the motors' currents as effort" :
-               "of none of the arm's joints; the messages name " + joined(contents.usable) +
-                   ": an arm's file gives its joints these names (docs/arm.md)";
+               "none for the joints of the arm; the messages name the joints " + joined(contents.usable) +
+                   ". The file of the arm must name its joints like this (docs/arm.md)";
   }
   const EffortFit& effort = arm.effort;
   const std::string factor = roundedText(effort.factor.value, 3);
@@ -97,11 +98,12 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
   }
   return effort.is_known && effort.unit == arm.configured_effort ?
              std::string(effortUnitName(effort.unit)) + "; with the load it changes " + factor +
-                 " times as configured" :
-             "changes with the load " + factor + " times as " + effortUnitName(arm.configured_effort) + " would";
+                 " times as much as the configured gain predicts" :
+             "changes with the load " + factor + " times as much as " + effortUnitName(arm.configured_effort) +
+                 " would";
 }
 
-/// Text on the joints whose gains the recording states.
+/// Text with the gains that the recording states.
 std::string textOfGains(const CheckedArm& arm)
 {
   std::string text;
@@ -112,13 +114,13 @@ std::string textOfGains(const CheckedArm& arm)
       text += (text.empty() ? "" : ", ") + joint.name + " " + roundedText(joint.stated_gain, 4);
     }
   }
-  return text + " N.m/A, of the controller";
+  return text + " N.m/A, as the controller states them";
 }
 
 std::string textOfStamps(const CheckedArm& arm)
 {
   const std::string rate = arm.timing.period > 0.0 ? roundedText(1.0 / arm.timing.period, 4) + " Hz" :
-                           arm.found.rows == 0     ? std::string("none that could be used") :
+                           arm.found.rows == 0     ? std::string("no usable row") :
                                                      std::string("one row");
   return rate + ", " + std::to_string(arm.timing.missing) + " missing, " + std::to_string(arm.found.gaps) + " gaps, " +
          std::to_string(arm.found.refused) + " repeated or out of order, " + std::to_string(arm.found.corrupt) +
@@ -131,15 +133,15 @@ std::string textOfVelocities(const CheckedArm& arm)
   {
     const bool fit = std::none_of(arm.findings.begin(), arm.findings.end(),
                                   [](const RecordingFinding& finding) { return finding.kind == "stamps"; });
-    return (fit ? "fit: " : "do not fit: ") + std::string("the angles change ") + roundedText(arm.stamps.value, 4) +
-           " times as fast by the stamps";
+    return (fit ? "fit: " : "do not fit: ") + std::string("by the stamps the angles change ") +
+           roundedText(arm.stamps.value, 4) + " times as fast as the velocities say";
   }
   const bool has =
       std::any_of(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& joint) { return joint.has_velocity; });
   const bool is_known = std::any_of(arm.joints.begin(), arm.joints.end(),
                                     [](const CheckedJoint& joint) { return std::isfinite(joint.time_factor.value); });
   return !has     ? "none: the stamps cannot be checked" :
-         is_known ? "do not fit the angles, see the joints" :
+         is_known ? "do not fit the angles; the table of the joints says how" :
                     "too little motion to compare them with the angles";
 }
 
@@ -148,7 +150,7 @@ void printLine(const char* label, const std::string& text)
   printWrapped(std::string(label) + std::string(12 - std::string(label).size(), ' ') + text, 0);
 }
 
-/// "fits" if there is no finding on the joint.
+/// Text of a finding on the joint; "fits" if the joint has no finding.
 std::string textOfFinding(const CheckedArm& arm, const CheckedJoint& joint)
 {
   const auto first = std::find_if(joint.findings.begin(), joint.findings.end(),
@@ -159,7 +161,7 @@ std::string textOfFinding(const CheckedArm& arm, const CheckedJoint& joint)
   }
   if (stops(arm.findings))
   {
-    return "see above";
+    return "see ERROR above";
   }
   return joint.findings.empty() ? (joint.verdict.isJudged() ? "fits" : "not judged, see below") :
                                   joint.findings.front().text;
@@ -188,11 +190,11 @@ void printJoints(const CheckedArm& arm)
   std::cout << '\n';
 }
 
-/// Joints that are not judged for one reason.
+/// Joints that are not judged, all for the same reason.
 struct OpenJoints
 {
   std::vector<std::string> names;
-  std::string text;  ///< text for all, or the part before the first joint's numbers
+  std::string text;  ///< text of the reason; without the numbers of the joints if these differ
 };
 
 /// Prints which joints will have a verdict, and the reasons for the others; `--json` has the numbers of all.
@@ -209,7 +211,7 @@ void printJudged(const CheckedArm& arm)
     }
     const Finding& finding = joint.verdict.findings.front();
     const bool is_said = stops(arm.findings) || stops(joint.findings);
-    const std::string text = is_said ? "as said above" : findingText(joint.verdict, finding);
+    const std::string text = is_said ? "for the reason above" : findingText(joint.verdict, finding);
     OpenJoints& alike = open[is_said ? "" : reasonName(finding.reason)];
     const bool differs = !alike.names.empty() && alike.text != text;
     alike.text = differs ? text.substr(0, text.find(": ")) : text;
@@ -245,8 +247,8 @@ void printArm(const RecordingCheck& check, const CheckedArm& arm)
   printLine("load", textOfLoad(arm));
   printLine("temperature", contents.temperature.empty() ?
                                (arm.joints.empty() ? std::string("not recorded") :
-                                                     "not recorded: " + roundedText(arm.temperature, 3) +
-                                                         " degC counts, as configured") :
+                                                     "not recorded; " + roundedText(arm.temperature, 3) +
+                                                         " degC is assumed, as configured") :
                                contents.temperature);
   for (const RecordingFinding& finding : arm.findings)
   {
@@ -259,9 +261,9 @@ void printArm(const RecordingCheck& check, const CheckedArm& arm)
   for (const TriedRemedy& remedy : arm.tried)
   {
     printLine("tried", remedy.options.substr(1) + ": the load leaves " + percentText(remedy.after) +
-                           " of the currents" +
+                           " of the currents unexplained" +
                            (std::isfinite(remedy.before) ? " instead of " + percentText(remedy.before) : "") +
-                           (remedy.helps ? "" : ": not the cause"));
+                           (remedy.helps ? "" : "; this is not the cause"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
@@ -298,7 +300,7 @@ int check(const Printed<RecordingOptions>& given)
 }
 
 const Subcommand CHECK{ Subject::RECORDING, "check",
-                        "what of an arm's recording is usable, what does not fit, and the command to run next",
+                        "show which signals of an arm's recording are usable, what does not fit, and the next command",
                         declarePrinted<RecordingOptions>, check };
 }  // namespace
 }  // namespace hjt

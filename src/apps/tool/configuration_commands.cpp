@@ -68,7 +68,7 @@ int describe(const ParametersOptions& options)
 
 void declare(OptionTable& table, ParametersOptions& options)
 {
-  table.flag("--markdown", options.markdown, "print the table of keys, ranges and meanings instead");
+  table.flag("--markdown", options.markdown, "print a Markdown table of keys, ranges and meanings instead of YAML");
   addCommonOptions(table, options);
 }
 

@@ -37,16 +37,16 @@ struct ExportOptions : CommonOptions
   std::string identified;
 };
 
-/// Properties of the joint that other simulators can represent, all at the joint.
+/// Properties of the joint that other simulators can represent, all on the output side of the gear.
 struct ExportedJoint
 {
   std::string name;             ///< name in XML
   double friction{};            ///< dry part of the straight line through the friction over the speed [N.m]
-  double damping{};             ///< slope of that line [N.m.s/rad]
-  double friction_deviation{};  ///< largest deviation of the twin's friction from the line [N.m]
+  double damping{};             ///< slope of the straight line through the friction over the speed [N.m.s/rad]
+  double friction_deviation{};  ///< largest deviation of the twin's friction from the straight line [N.m]
   double armature{};            ///< inertia of motor and wave generator at the joint [kg.m^2]
   double stiffness{};           ///< series stiffness: secant between plus and minus the rated torque [N.m/rad]
-  double hysteresis{};          ///< dry friction in parallel to it: half the height of the torsion loop [N.m]
+  double hysteresis{};          ///< dry friction parallel to the stiffness: half the height of the torsion loop [N.m]
   double inertia{};             ///< inertia of circular spline and load [kg.m^2]
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
@@ -71,20 +71,23 @@ void fitFriction(const Parameters& parameters, ExportedJoint& joint)
   joint.friction_deviation = (line * fitted - friction).cwiseAbs().maxCoeff();
 }
 
-/// Comment of the XML file on what its format cannot represent.
+/// Comment for the XML file. It says what the format of the file cannot represent.
 std::string missing(const ExportedJoint& joint, const Parameters& parameters, bool has_armature, bool has_stiffness)
 {
   const auto text = [](double value) { return roundedText(value, 4); };
-  std::string lines = "  Not represented: friction by load and temperature (here: no load, " +
-                      text(parameters.input.temperature) + " degC) and off its straight line (up to " +
-                      text(joint.friction_deviation) + " N.m);\n  stiffness that grows with the torque, " +
+  std::string lines = "  Not represented: effect of load and temperature on the friction (here: no load, " +
+                      text(parameters.input.temperature) +
+                      " degC), deviation of the friction\n  from a straight "
+                      "line over the speed (up to " +
+                      text(joint.friction_deviation) + " N.m), stiffness that grows with the torque, " +
                       (has_stiffness ? "hysteresis of small swings" : "hysteresis") +
                       ", lost motion, kinematic error, backlash of the brake, faults.\n";
   lines += has_armature ?
                "" :
                "  Not in this format: inertia of the motor at the joint, " + text(joint.armature) + " kg.m^2.\n";
   lines += has_stiffness ? "" : "  Not in this format: stiffness in series, " + text(joint.stiffness) + " N.m/rad.\n";
-  return "<!--\n  A joint of harmonic_joint_twin; SI units, at the joint.\n" + lines + "-->\n";
+  return "<!--\n  A joint of harmonic_joint_twin. Values are in SI units, on the output side of the gear.\n" + lines +
+         "-->\n";
 }
 
 std::string attribute(const char* name, double value)
@@ -110,13 +113,13 @@ std::string urdf(const ExportedJoint& joint, const Parameters& parameters)
 
 std::string sdfLink(const char* name, double inertia)
 {
-  // The mass rotates about its own axis and has no effect.
+  // The mass of 1 kg has no effect, because it rotates about its own axis.
   return std::string("    <link name=\"") + name + "\">\n      <inertial><mass>1</mass><inertia>" +
          element("ixx", inertia) + element("iyy", inertia) + element("izz", inertia) +
          "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>\n    </link>\n";
 }
 
-/// The motor's inertia is a separate link before the spring of the gear.
+/// SDF text. The motor's inertia is a separate link, which the spring of the gear connects with the output.
 std::string sdf(const ExportedJoint& joint, const Parameters& parameters)
 {
   const std::string axis = "      <axis>\n        <xyz>0 0 1</xyz>\n        ";
@@ -138,14 +141,15 @@ std::string mjcfInertial(double inertia)
   return "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"" + text + ' ' + text + ' ' + text + "\"/>\n";
 }
 
-/// MuJoCo lets what friction holds creep; with the greatest impedance that it knows by microradians a second.
+/// Attributes of dry friction. In MuJoCo a joint that friction holds creeps: with the largest impedance that MuJoCo
+/// allows, by microradians per second.
 std::string mjcfFriction(double friction)
 {
   return attribute("frictionloss", friction) + " solimpfriction=\"0.9999 0.9999 0.001 0.5 2\"";
 }
 
-/// Time step: that of MuJoCo, or 4 % of the period of motor against output on the spring if that is shorter. A third of
-/// the period is the limit of stability.
+/// Time step: MuJoCo's default or, if shorter, 4 % of the period in which motor and output oscillate against each other
+/// on the spring. A third of this period is the limit of stability.
 double mjcfTimeStep(const ExportedJoint& joint)
 {
   constexpr double OWN = 0.002;
@@ -169,8 +173,8 @@ std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
          "\"/>\n  </actuator>\n</mujoco>\n";
 }
 
-/// Paths of those libraries, by the beginnings of their names, that this program has loaded and another system may
-/// lack; empty if they are linked statically.
+/// Paths of the loaded libraries whose names are in `names`. Another system may lack them. Empty if these libraries are
+/// linked statically.
 std::vector<std::string> loadedLibraries(const std::vector<std::string>& names)
 {
   struct Search
@@ -222,12 +226,12 @@ int exportJoint(const ExportOptions& options)
   const bool is_fmu = options.format == "fmu" || options.format == "fmu2";
   if (is_fmu == options.out.empty())
   {
-    std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is for --format fmu") << '\n';
+    std::cerr << "joint_twin: " << (is_fmu ? "--format fmu needs --out" : "--out is only for --format fmu") << '\n';
     return EXIT_USAGE;
   }
   if (options.arm.empty() ? !options.identified.empty() : !is_fmu)
   {
-    const char* wrong = options.arm.empty() ? "--identified is for --arm" : "--arm is for --format fmu";
+    const char* wrong = options.arm.empty() ? "--identified is only for --arm" : "--arm is only for --format fmu";
     std::cerr << "joint_twin: " << wrong << '\n';
     return EXIT_USAGE;
   }
@@ -267,7 +271,7 @@ void declare(OptionTable& table, ExportOptions& options)
            "co-simulation unit of FMI 3.0 or 2.0, written to --out")
       .required()
       .choice({ "urdf", "sdf", "mjcf", "fmu", "fmu2" });
-  table.add("--out", options.out, "file of the unit").type("FILE.fmu");
+  table.add("--out", options.out, "file for the FMI unit").type("FILE.fmu");
   table.add("--arm", options.arm, "export this whole arm with its drives, links and controller").type("NAME|FILE.yaml");
   table.add("--identified", options.identified, "directory of overlays that `joint_twin identify --arm` wrote")
       .type("DIR")

@@ -37,7 +37,7 @@ struct GearOptions : CommonOptions
 struct Figure
 {
   std::string name;
-  double catalogue;  // 0: the catalogue has none
+  double catalogue;  // value in the catalogue; 0 if the catalogue has none
   double gear;
   std::string unit;
 };
@@ -168,7 +168,7 @@ int gear(const GearOptions& options)
 std::string invalidRatio(const std::string& text)
 {
   const std::optional<double> ratio = decimalNumber(text);
-  return ratio && *ratio >= 30.0 && *ratio <= 320.0 ? "" : "a ratio is a whole number, 30 ... 320";
+  return ratio && *ratio >= 30.0 && *ratio <= 320.0 ? "" : "a ratio is a whole number from 30 to 320";
 }
 
 void declare(OptionTable& table, GearOptions& options)
@@ -266,8 +266,8 @@ int profile(const CommonOptions& options)
 }
 
 const Subcommand PROFILE{ Subject::GEAR, "profile",
-                          "half clearance of the tooth flanks over the drop from full engagement, and the path of a "
-                          "tooth on the ideal ring; with --json also the shapes of tooth and space",
+                          "half clearance of the tooth flanks over the drop, the radial distance of a tooth from full "
+                          "engagement; path of a tooth on the ideal ring; with --json also shapes of tooth and space",
                           addCommonOptions, profile };
 
 struct ManufactureOptions : CommonOptions
@@ -281,13 +281,13 @@ std::vector<double> list(const Eigen::VectorXd& values)
   return { values.data(), values.data() + values.size() };
 }
 
-/// Fp: largest minus smallest cumulative deviation [m].
+/// Fp: largest minus smallest cumulative pitch deviation [m].
 double totalDeviation(const Eigen::VectorXd& pitch)
 {
   return pitch.maxCoeff() - pitch.minCoeff();
 }
 
-/// fp: largest error of the distance between neighbours [m].
+/// fp: largest error of the distance between two neighbouring teeth [m].
 double singleDeviation(const Eigen::VectorXd& pitch)
 {
   double largest = 0.0;
@@ -328,13 +328,14 @@ int manufacture(const ManufactureOptions& options)
   printReport(
       options.json,
       { { "flexspline.total_pitch_deviation", "flexspline, total pitch deviation", totalDeviation(flexspline), "m" },
-        { "flexspline.single_pitch_deviation", "flexspline, largest of one pitch", singleDeviation(flexspline), "m" },
+        { "flexspline.single_pitch_deviation", "flexspline, largest single pitch deviation",
+          singleDeviation(flexspline), "m" },
         { "flexspline.pitch_deviation", "", list(flexspline) },
         { "flexspline.across", "", list(errors.tooth_across) },
         { "flexspline.along", "", list(errors.tooth_along) },
         { "circular_spline.total_pitch_deviation", "circular spline, total pitch deviation",
           totalDeviation(circular_spline), "m" },
-        { "circular_spline.single_pitch_deviation", "circular spline, largest of one pitch",
+        { "circular_spline.single_pitch_deviation", "circular spline, largest single pitch deviation",
           singleDeviation(circular_spline), "m" },
         { "circular_spline.pitch_deviation", "", list(circular_spline) },
         { "circular_spline.across", "", list(errors.space_across) },

@@ -28,7 +28,7 @@ namespace
 {
 constexpr int JOINTS = 6;
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
-constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // [ns]; temperatures change slowly
+constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // time between two messages of temperatures [ns]
 /// Torque at the joint per motor current of the size 3 joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
 
@@ -162,7 +162,7 @@ double countLines(const std::string& path)
   return static_cast<double>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
-/// Writes all rows to the bag. @returns the number of rows. On an error the rows before it stay in a readable bag.
+/// Writes all rows to the bag. @returns the number of rows. After an error the bag is readable and has the rows before.
 std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
                          NumberTable<ROW_COLUMNS>& table, BagWriter& bag)
 {
@@ -198,12 +198,12 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
   {
     if (!bag.isOpen())
     {
-      throw;  // the output itself
+      throw;  // an error in writing the output
     }
     bag.close();
     throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :
                                                               "; " + options.out + " is readable and contains the " +
-                                                                  std::to_string(rows) + " rows before it"));
+                                                                  std::to_string(rows) + " rows before the error"));
   }
   bag.close();
   return rows;
@@ -240,8 +240,8 @@ void declare(OptionTable& table, ImportOptions& options)
           {
             return findUrJoint(name) ? std::string() :
                                        "'" + name +
-                                           "' is no joint: base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or "
-                                           "0 ... 5";
+                                           "' is not a joint; the joints are base, shoulder, elbow, wrist_1, wrist_2, "
+                                           "wrist_3, or 0 to 5";
           });
   table.add("--out", options.out, "file for the bag").required().type("FILE.bag").endsIn({ ".bag" });
   table.add("--gain", options.gain, "torque at the joint per ampere of motor current [N.m/A]");

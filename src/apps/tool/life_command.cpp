@@ -65,7 +65,7 @@ struct LifeBench
   DriveAgeing ageing;
 };
 
-/// The nominal drive at a time of its use.
+/// State of the nominal drive after some hours of use.
 struct AgeRow
 {
   double hours{};
@@ -98,13 +98,13 @@ const std::vector<Column<AgeRow>> AGE_COLUMNS{
   fatigueColumn("fatigue_flange", StressPlace::FLANGE)
 };
 
-/// Stress of the new flexspline at one place under one load over a turn, and the cycles to failure.
+/// Stress of the new flexspline at one place, under one load, over a turn of the motor, and the cycles to failure.
 struct FatigueRow
 {
   double torque{};
   std::size_t place{};
   StressCycle cycle;
-  double equivalent{};   ///< amplitude at zero mean stress that does the same damage at the notch [Pa]
+  double equivalent{};   ///< stress amplitude at the notch with zero mean that does as much damage [Pa]
   double cycles{};       ///< cycles that half of all flexsplines endure; infinite below the endurance limit
   double cycles_weak{};  ///< cycles that 99 % of all flexsplines endure
   double allowed{};      ///< cycles that the catalogue allows; infinite up to the repeated peak torque
@@ -123,7 +123,7 @@ const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
 
 std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque, const RevolutionLoad& revolution_load)
 {
-  constexpr double WEAKEST_HUNDREDTH = -2.326;  // in standard deviations
+  constexpr double WEAKEST_HUNDREDTH = -2.326;  // 1 % quantile of the normal distribution [standard deviations]
   const FatigueLaw fatigue_law(parameters.life, parameters.stress);
   const double weak = std::exp(WEAKEST_HUNDREDTH * parameters.life.fatigue_spread);
   const auto lasts = [&](double share) { return 1.0 / fatigue_law.damage(share, false); };
@@ -142,7 +142,7 @@ std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque,
   return rows;
 }
 
-/// A phase of the duty cycle with the load of the new drive.
+/// A phase of the duty cycle, with the sliding and fatigue that it causes in a new drive.
 struct FreshPhase
 {
   DutyPhase phase;
@@ -224,7 +224,7 @@ int age(const AgeOptions& options)
     { "flaw_depth", "crack at the tooth root", life.age.flaw_depth, "m" },
     { "fatigue", "fatigue of the flexspline (1: broken)",
       *std::max_element(life.age.fatigue.begin(), life.age.fatigue.end()) },
-    { "", "bearings failed by then", bearing.failedBy(life.age.bearing_turns) },
+    { "", "share of bearings that fail by then", bearing.failedBy(life.age.bearing_turns) },
     { "phases", "", Table(PHASE_COLUMNS, phases).rows() },
   };
   if (options.check)
@@ -310,7 +310,7 @@ int trials(const TrialsOptions& options)
                               { "coverage_80", "", all.share() },
                               { "coverage_80_from_half_life", "", later.share() },
                               { "", "truth within the 80 % interval", 100.0 * all.share(), "%" },
-                              { "", "the same, in the second half of each life", 100.0 * later.share(), "%" } });
+                              { "", "the same share, in the second half of each life", 100.0 * later.share(), "%" } });
   return EXIT_DONE;
 }
 
@@ -318,12 +318,14 @@ void declareLife(OptionTable& table, LifeOptions& options)
 {
   table
       .add("DUTY", options.duty,
-           "CSV file of a duty cycle, repeated: duration [s], motor_speed [rad/s], load_torque [N.m], "
-           "temperature [degC]")
+           "CSV file of a duty cycle, which is repeated; columns: duration [s], motor_speed [rad/s], "
+           "load_torque [N.m], temperature [degC]")
       .required()
       .existingFile();
   table.add("--hours", options.hours, "longest duration of use [h]").range(1e-3, 1e9);
-  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch for the averages")
+  table
+      .add("--positions", options.positions,
+           "number of wave generator angles per tooth pitch, over which quantities are averaged")
       .range(1, 100000);
   table.flag("--grease-changes", options.grease_changes, "change the grease whenever it is due");
   table.add("--csv", options.csv, "file for the rows");
@@ -335,23 +337,22 @@ void declareAge(OptionTable& table, AgeOptions& options)
   declareLife(table, options);
   table.add("--every", options.every, "hours of use between two rows").range(1e-3, 1e9);
   table.flag("--check", options.check,
-             "also compute the error of the map between the stages of wear (takes some seconds)");
+             "also compute the error of the map of loads between its stages of wear (takes some seconds)");
 }
 
-const Subcommand AGE{ Subject::STUDY, "life age", "the nominal drive, from new to the end of its use", declareAge,
-                      age };
+const Subcommand AGE{ Subject::STUDY, "life age", "life of the nominal drive, from new to its end", declareAge, age };
 
 void declareTrials(OptionTable& table, TrialsOptions& options)
 {
   declareLife(table, options);
   LifeTrialOptions& trial = options.trials;
-  table.add("--lives", trial.lives, "drives").range(1, 1000000);
+  table.add("--lives", trial.lives, "number of drives").range(1, 1000000);
   table.add("--seed", trial.seed, "seed of all random draws");
   table.add("--every", trial.every, "hours of use between two assessments").range(1e-3, 1e9);
 }
 
 const Subcommand TRIALS{ Subject::STUDY, "life trials",
-                         "drives drawn from the spread of the parameters, each with forecasts of its remaining life",
+                         "lives of drives whose parameters are drawn at random, with forecasts of the remaining life",
                          declareTrials, trials };
 }  // namespace
 }  // namespace hjt

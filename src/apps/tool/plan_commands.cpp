@@ -78,11 +78,11 @@ public:
   struct OfBlock
   {
     double count{};
-    std::uint64_t first_run;     ///< first run that needs a surface; if none does, the first run of the block
+    std::uint64_t first_run;     ///< first run that needs a surface; if no run does, the first run of the block
     std::size_t of_first_run{};  ///< number of surfaces that this run needs
   };
 
-  /// Checks every run for a few seconds; the later ones are assumed to be like the earlier ones.
+  /// Checks runs for a few seconds. The unchecked runs of the block are assumed to need as many surfaces on average.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;
@@ -134,7 +134,7 @@ std::string shortTime(double seconds)
 {
   constexpr double MINUTE = 60.0;
   constexpr double HOUR = 3600.0;
-  constexpr double MANY = 100.0;  // larger values have the next unit
+  constexpr double MANY = 100.0;  // larger values are printed in the next larger unit
   return seconds < MANY          ? rounded(seconds) + " s" :
          seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
                                    rounded(seconds / HOUR) + " h";
@@ -173,7 +173,7 @@ void printExpectation(const Plan& plan, unsigned jobs)
     const RunSpec spec = plan.run(block.first);
     const MissingSurfaces::OfBlock needed = missing.of(plan, block);
     const RunCost cost = simulation.sample(needed.first_run, SAMPLE);
-    // The surfaces of the trial run then exist, unless none are stored.
+    // After the trial the surfaces of its run exist, unless the source stores none.
     const auto tried = static_cast<double>(needed.of_first_run);
     const double to_build = needed.count - (source.cache_directory.empty() ? 0.0 : tried);
     surfaces += to_build;
@@ -183,9 +183,10 @@ void printExpectation(const Plan& plan, unsigned jobs)
     bytes += runs * dataSize(plan.recording(), spec);
     length += runs * spec.duration;
     std::cout << "runs " << block.first << " ... " << block.run(block.size - 1) << ": class " << spec.fault_class
-              << ", duty " << spec.duty_name << ", " << rounded(cost.real_time_factor) << " times real time\n";
+              << ", duty " << spec.duty_name << ", " << rounded(cost.real_time_factor)
+              << " times as fast as real time\n";
   }
-  // All processors build one surface.
+  // All processors together build one surface. Each job simulates on one processor.
   const double together = std::min<double>(
       { static_cast<double>(jobs), static_cast<double>(processors()), static_cast<double>(plan.runs()) });
   std::vector<NamedValue> values{ { "runs", std::to_string(plan.runs()), "" } };
@@ -193,14 +194,14 @@ void printExpectation(const Plan& plan, unsigned jobs)
   {
     values.push_back({ "check-ups", std::to_string(plan.lives()->checkUps()), "" });
   }
-  values.push_back({ "simulated, together", shortTime(length), "" });
+  values.push_back({ "simulated time of all runs", shortTime(length), "" });
   values.push_back({ "response surfaces to build", std::to_string(std::llround(surfaces)), "" });
   values.push_back(
       { "expected time, " + std::to_string(jobs) + " jobs", shortTime(surface_time + run_time / together), "" });
   values.push_back({ "numbers of all files", bytes > 0.0 ? rounded(bytes / 1e6) : "-", "MB" });
   printValues(values);
   std::cout << "The time is estimated from one run of each class and duty cycle, tried for at most " << SAMPLE
-            << " s, and from building its first response surface.\n";
+            << " s, and from the time that its first response surface takes.\n";
 }
 
 Watch sweepWatch()
@@ -250,13 +251,14 @@ void tellResult(const SweepCommandOptions& options, const SweepResult& result)
   }
   else
   {
-    std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " were there, " << result.failed
-              << " failed, " << result.damaged << " damaged ones done again; index: " << result.index << "\n";
+    std::cerr << "joint_twin: " << result.done << " runs done, " << result.present << " already present, "
+              << result.failed << " failed, " << result.damaged << " damaged and repeated; index: " << result.index
+              << "\n";
   }
   warn(result.rows_without_forces, WITHOUT_FORCES);
 }
 
-/// Runs `work` on the plan, or only what the options ask for.
+/// Runs `work` on the plan. With --list or --dry-run it only prints the index or the expectation.
 int workOff(const SweepCommandOptions& given, SweepResult (*work)(const SweepOptions&))
 {
   if (given.list || given.dry_run)
@@ -281,7 +283,7 @@ int workOff(const SweepCommandOptions& given, SweepResult (*work)(const SweepOpt
   tellResult(options, result);
   if (interruptSignal() != 0)
   {
-    std::cerr << "joint_twin: interrupted; the same command resumes\n";
+    std::cerr << "joint_twin: interrupted; the same command resumes the work\n";
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   return result.failed > 0 ? EXIT_FAILED : EXIT_DONE;
@@ -312,7 +314,7 @@ struct SignaturesOptions : CommonOptions
   unsigned jobs{ SweepOptions().jobs };
 };
 
-/// Simulates the runs of all plans; finished ones are kept. An interrupt ends it early.
+/// Simulates the runs of all plans. Finished runs are kept. An interrupt ends the function early.
 SweepResult workOff(const SignaturesOptions& options, const std::string& runs, const Watch& watch, SignatureRuns& found)
 {
   SweepOptions sweeping;
@@ -352,7 +354,8 @@ int signatures(const SignaturesOptions& options)
   if (interruptSignal() != 0)
   {
     std::cerr << "joint_twin: interrupted"
-              << (options.runs.empty() ? "; with --runs finished runs are kept" : "; the same command resumes") << '\n';
+              << (options.runs.empty() ? "; --runs would keep finished runs" : "; the same command resumes the work")
+              << '\n';
     return EXIT_BY_SIGNAL + interruptSignal();
   }
   const Parameters parameters = Plan(options.plans.front(), options).run(0).parameters;
@@ -361,7 +364,7 @@ int signatures(const SignaturesOptions& options)
   writeTextFile(options.out, kept ? withRowsOf(*kept, options.add, own) : own);
   printReport(options.json, { { "output", "", options.out },
                               { "done", "runs done", runs.done },
-                              { "present", "runs that were there", runs.present },
+                              { "present", "runs already present", runs.present },
                               { "failed", "runs that failed", runs.failed } });
   const int written = reportWritten(options.out, options.json);
   return runs.failed > 0 ? EXIT_FAILED : written;
@@ -371,13 +374,12 @@ void declare(OptionTable& table, SignaturesOptions& options)
 {
   table
       .add("plans", options.plans,
-           "plans as for sweep, with format bag: a class without faults, then classes of one fault each; several plans "
-           "for motions or gears "
-           "that differ (docs/own_gear.md)")
+           "plans as for `joint_twin sweep`, with format bag. The first class has no faults, each other class has one "
+           "fault. Several motions or gears need a plan each (docs/own_gear.md)")
       .required()
       .type("PLAN.yaml");
   table.add("--out", options.out, "file for parameter indicators.signatures").required().type("FILE.yaml");
-  table.add("--runs", options.runs, "directory of the runs; finished runs in it are kept; default: none").type("DIR");
+  table.add("--runs", options.runs, "directory where finished runs are kept; default: they are not kept").type("DIR");
   table.add("--add", options.add, "file of signatures to which those of the plans are appended; default: none")
       .type("FILE.yaml");
   addJobsOption(table, options.jobs);

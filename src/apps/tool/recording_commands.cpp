@@ -33,7 +33,7 @@ int printFollowed(const PrintedFollow& options, const Followed& followed)
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",
-                         "runs a healthy joint on a recording: measured and predicted motion and current",
+                         "run a sound joint on a recording: measured and predicted motion and current",
                          declarePrinted<FollowOptions>, runWatched<follow, printFollowed, true, PrintedFollow> };
 
 using PrintedIndicators = Printed<IndicatorsOptions>;
@@ -67,7 +67,7 @@ const Subcommand REMAINING{ Subject::RECORDING, "remaining",
                             declarePrinted<RemainingOptions>,
                             runWatched<remaining, printRemaining, false, PrintedRemaining> };
 
-/// Options of a function with a verdict.
+/// Options of a library function that gives a verdict.
 template <class Options>
 struct Judging : Printed<Options>
 {
@@ -81,13 +81,12 @@ void declareJudging(OptionTable& table, Judging<Options>& options)
   declarePrinted<Options>(table, options);
   table
       .add("--fail-on", options.fail_on,
-           "exit code 3 for this verdict or a worse one, 4 if nothing can be judged; with not-judged: 3 for a warning "
-           "or an error "
-           "and 4 for a joint that is not judged; default: the exit code does not depend on the verdict")
+           "exit code 3 for this verdict or a worse one, and 4 if no joint can be judged. With not-judged: 3 for WARN "
+           "or ERROR, otherwise 4 if a joint is not judged. Default: the exit code does not depend on the verdict")
       .choice({ "warn", "error", "not-judged" });
 }
 
-/// Exit code for a verdict.
+/// Exit code for the verdict in `found`, by the value of --fail-on.
 template <class Judged>
 int exitCodeOf(const std::string& fail_on, const Judged& found)
 {
@@ -217,7 +216,7 @@ int printIdentified(const PrintedIdentify& options, const Identified& identified
     printReport(options.json, whole.lines, whole.tables);
     return code;
   }
-  // The errors are a separate block, because their values are long and the names above are not.
+  // The errors are a separate block, because their values are long and those of the block above are short.
   printReport(false, report.values.lines);
   std::cout << '\n';
   printReport(false, report.errors);
@@ -250,7 +249,7 @@ int runOfController(const PrintedIdentify& options)
   return any ? EXIT_DONE : EXIT_FAILED;
 }
 
-/// Selects the overload for a recording.
+/// Selects the overload of `identify` for a recording.
 Identified identifyRecorded(const IdentifyOptions& options)
 {
   return identify(options);

@@ -38,7 +38,7 @@ enum ProfileColumn
   COLUMNS
 };
 
-constexpr Range TIMES{ 0.0, 1e9 };  // [s]; the range of a stamp
+constexpr Range TIMES{ 0.0, 1e9 };  // range of a stamp [s]
 
 /// Inputs of a simulation: motor torque, load and brake over time, each constant until the next entry.
 class TorqueProfile
@@ -101,10 +101,10 @@ public:
 
   Stamp duration() const { return inputs_.back().stamp; }  ///< time of the last entry [ns]
 
-  /// Commands what acts in the twin's next step. `begin`: instant of t = 0.
+  /// Gives the twin the inputs that act in its next step. `begin`: stamp of t = 0 [ns].
   void feed(Twin& twin, Stamp begin)
   {
-    // A profile holds its torque for any time. The command is repeated at every instant, so that it does not time out.
+    // A torque of a profile can last for any time. It is commanded in every step, so that it does not time out.
     twin.commandMotorTorque(twin.stamp(), motor_torque_);
     const Stamp end = twin.stamp() + twin.stepLength();
     for (; next_ < inputs_.size() && begin + inputs_[next_].stamp < end; ++next_)
@@ -116,7 +116,7 @@ public:
   }
 
 private:
-  std::vector<Input> inputs_;  ///< stamps from t = 0
+  std::vector<Input> inputs_;  ///< inputs; their stamps count from t = 0
   std::size_t next_{};
   bool has_load_{};
   double motor_torque_{};
@@ -147,7 +147,7 @@ TorqueProfile makeProfile(const SimulateOptions& options)
   return profile;
 }
 
-/// Writes one row for each instant of joint_states.
+/// Writes one row for each message on joint_states.
 class CsvRecorder
 {
 public:
@@ -273,7 +273,7 @@ void declare(OptionTable& table, SimulateOptions& options)
       .type("FILE.csv");
   table.oneOf({ "--torque", "--profile" });
   table.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");
-  table.add("--out", options.out, "bag with the node's topics, or CSV file with a row for each instant of joint_states")
+  table.add("--out", options.out, "bag with the node's topics, or CSV file with a row for each message on joint_states")
       .required()
       .type("FILE.bag|FILE.csv")
       .endsIn({ ".bag", ".csv" });
@@ -282,9 +282,9 @@ void declare(OptionTable& table, SimulateOptions& options)
   addCommonOptions(table, options);
 }
 
-const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given torque", declare, simulate };
+const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given motor torque", declare, simulate };
 
-/// Longest recording [s]. A longer one has a damaged time of recording, and the twin would simulate years.
+/// Longest recording [s]. In a longer recording a time is damaged, and the twin would simulate years.
 constexpr double MAX_RECORDING = 1e6;
 
 struct ReplayOptions : CommonOptions
@@ -295,8 +295,8 @@ struct ReplayOptions : CommonOptions
   bool without_command{};
 };
 
-/// Default configuration of a replay: the response surface, whose error is below the resolution of the topics' sensors,
-/// and which is a hundred times as fast. A file or --set may change it. Each Health message says which was used.
+/// Configuration of a replay: by default with the response surface. Its error is below the resolution of the published
+/// sensor values. A file or --set may select the full ring. Each Health message says which of the two was used.
 ParameterMap replayedMap(const ReplayOptions& options)
 {
   ParameterMap map = defaultParameterMap(options);
@@ -305,7 +305,7 @@ ParameterMap replayedMap(const ReplayOptions& options)
   return map;
 }
 
-/// Whether a file or --set other than the default configuration names the joint.
+/// Whether the user names the joint, by a file or by --set.
 bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
 {
   CommonOptions defaults;
@@ -340,7 +340,7 @@ bool suffices(const BagInputs& found, const ReplayOptions& options)
                      });
 }
 
-/// @throws InputError if the recording lasts for years because of damage.
+/// @throws InputError if the recording is longer than MAX_RECORDING.
 void checkSpan(const rosbag::Bag& bag, const std::string& path)
 {
   rosbag::View view(bag);
@@ -348,11 +348,12 @@ void checkSpan(const rosbag::Bag& bag, const std::string& path)
   if (span > MAX_RECORDING)
   {
     throw InputError(path + ": the times of recording span " + shortNumber(span) + " s, allowed: at most " +
-                     shortNumber(MAX_RECORDING) + " s; one of them is damaged");
+                     shortNumber(MAX_RECORDING) + " s; at least one of these times is damaged");
   }
 }
 
-/// Inputs of the bag. If it commands only one joint and the user has named none, `parameters` gets its name.
+/// Inputs of the bag. If the bag commands only one joint and the user has named no joint, `parameters` gets the name of
+/// the commanded joint. @throws InputError if the bag contains nothing to replay.
 BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, const ParameterMap& map,
                         Parameters& parameters)
 {
@@ -370,7 +371,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   }
   warn(found.without_effort, "messages name " + parameters.joint.name + " but give no effort for it; ignored");
   warn(found.damaged, "damaged messages on input topics; ignored");
-  warn(found.refused_faults, "faults of unknown kind or out of range; ignored");
+  warn(found.refused_faults, "faults of unknown kind or with a value out of range; ignored");
   if (!found.other_joints.empty())
   {
     std::cerr << "joint_twin: the replay ignored messages for other joints: " << joined(found.other_joints) << '\n';
@@ -378,7 +379,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   return found;
 }
 
-/// A twin along a recording: copies each original message, after the simulated ones up to its time.
+/// Runs a twin along a recording. Each message of the recording is copied after all simulated messages up to its time.
 class Replay
 {
 public:
@@ -465,19 +466,19 @@ int replay(const ReplayOptions& options)
   {
     if (!run.isOpen())
     {
-      throw;  // an error of the output itself
+      throw;  // an error in writing the output
     }
     run.close();
     throw InputError(options.bag + ": replay stopped: " + error.what() + "; " + options.out +
-                     " is readable and contains the messages before");
+                     " is readable and contains the messages before the error");
   }
   return summary.report(twin, options.json);
 }
 
 void declare(OptionTable& table, ReplayOptions& options)
 {
-  table.add("bag", options.bag, "the recording").required().type("IN.bag");
-  table.add("--out", options.out, "the bag with the simulated topics added")
+  table.add("bag", options.bag, "recording to replay").required().type("IN.bag");
+  table.add("--out", options.out, "bag to write: the recording with the simulated topics added")
       .required()
       .type("OUT.bag")
       .endsIn({ ".bag" });

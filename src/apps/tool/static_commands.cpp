@@ -33,7 +33,7 @@ const std::vector<ToothColumn> RING_COLUMNS{ { "tooth_x", &ToothTable::tooth_x }
                                              { "stress_tooth_space", &ToothTable::stress_tooth_space },
                                              { "stress_transition", &ToothTable::stress_transition },
                                              { "stress_flange", &ToothTable::stress_flange } };
-/// Only with a circular spline.
+/// Quantities of a tooth that exist only with a circular spline.
 const std::vector<ToothColumn> SPACE_COLUMNS{ { "across", &ToothTable::across },
                                               { "depth", &ToothTable::depth },
                                               { "tilt", &ToothTable::tilt },
@@ -56,7 +56,7 @@ std::vector<std::string> headings(std::vector<std::string> leading, const std::v
   return leading;
 }
 
-/// Writes one line for each tooth, each beginning with `leading`.
+/// Writes one line for each tooth. Each line begins with the values `leading`.
 void writeTeeth(CsvWriter& csv, const std::vector<double>& leading, const ToothTable& teeth,
                 const std::vector<ToothColumn>& columns)
 {
@@ -223,9 +223,8 @@ void declareStiffness(OptionTable& table, StiffnessOptions& options)
 {
   table
       .add("--torques", options.torques,
-           "loads on the circular spline, for example 5,14,48 [N.m]; > 0 turns the output towards negative angles, as "
-           "a load "
-           "that resists positive motion does")
+           "loads on the circular spline, for example 5,14,48 [N.m]; a load > 0 resists positive motion and turns the "
+           "output towards negative angles")
       .required();
   table.add("--angle", options.angle, "wave generator angle [rad]");
   table.add("--csv", options.csv, "file for positions and forces of every tooth at every torque").type("FILE");
@@ -239,8 +238,8 @@ void declareStiffness(OptionTable& table, StiffnessOptions& options)
       .needs("--json");
 }
 
-const Subcommand STIFFNESS{ Subject::GEAR, "stiffness", "torsion under load, wave generator locked", declareStiffness,
-                            stiffness };
+const Subcommand STIFFNESS{ Subject::GEAR, "stiffness", "torsion under load with the wave generator locked",
+                            declareStiffness, stiffness };
 
 struct TurnOptions : CommonOptions
 {
@@ -278,7 +277,7 @@ void declareTurn(OptionTable& table, TurnOptions& options)
 {
   table.add("--load", options.load, "load on the circular spline [N.m]").required();
   table.add("--angle-range", options.angle_range, "angle to which the wave generator turns from 0 [rad]").required();
-  table.add("--steps", options.steps, "number of equal steps").required().range(1, 1e8);
+  table.add("--steps", options.steps, "number of equal steps of the turn").required().range(1, 1e8);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }
@@ -288,12 +287,14 @@ const Subcommand TURN{ Subject::GEAR, "turn", "quasi-static turning at constant 
 
 struct PitchOptions : CommonOptions
 {
-  int positions{ 16 };  // wave generator angles in a tooth pitch
+  int positions{ 16 };  // number of wave generator angles per tooth pitch
 };
 
 void declarePitch(OptionTable& table, PitchOptions& options)
 {
-  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch for the averages")
+  table
+      .add("--positions", options.positions,
+           "number of wave generator angles per tooth pitch, over which quantities are averaged")
       .range(1, 100000);
   addFaultOption(table, options);
   addCommonOptions(table, options);
@@ -366,7 +367,7 @@ int breakaway(const PitchOptions& options)
 }
 
 const Subcommand BREAKAWAY{ Subject::GEAR, "breakaway",
-                            "torques at which the gear begins to move, from the wave generator and from the output",
+                            "torques at the wave generator, and at the output, at which the gear begins to move",
                             declarePitch, breakaway };
 
 struct HysteresisOptions : CommonOptions
@@ -391,7 +392,7 @@ int hysteresis(const HysteresisOptions& options)
   }
   const std::vector<Column<TorsionPoint>> columns{ { "torque", &TorsionPoint::torque, "" },
                                                    { "output_angle", &TorsionPoint::output_angle, "" } };
-  printReport(options.json, { { "hysteresis", "hysteresis, loop width at no load", loop.hysteresis, "rad" },
+  printReport(options.json, { { "hysteresis", "hysteresis, width of the loop at zero load", loop.hysteresis, "rad" },
                               { "lost_motion", "lost motion", loop.lost_motion, "rad" },
                               { "points", "", Table(columns, loop.points).rows() } });
   return EXIT_DONE;
@@ -402,10 +403,10 @@ void declareHysteresis(OptionTable& table, HysteresisOptions& options)
   table.add("--amplitude", options.amplitude, "largest load [N.m]").required().positive();
   table
       .add("--lost-motion-torque", options.lost_motion_torque,
-           "load of the lost motion, plus and minus, for example 4 % of the rated torque [N.m]")
+           "lost motion is measured between plus and minus this load, for example 4 % of the rated torque [N.m]")
       .required()
       .positive();
-  table.add("--steps", options.steps, "number of angles of one sweep").range(2, 1000000);
+  table.add("--steps", options.steps, "number of angles from one end of the load cycle to the other").range(2, 1000000);
   addFaultOption(table, options);
   addCommonOptions(table, options);
 }

@@ -27,7 +27,7 @@ const std::map<std::string, RingMethod> METHODS{ { "rk4", RingMethod::RUNGE_KUTT
 int stopped(double time)
 {
   std::cerr << "joint_twin: the integration of the ring failed at " << time
-            << " s; a shorter --step may help (rk4 needs less than 2.8 over the stiffest mode's angular frequency)\n";
+            << " s; a shorter --step may help (for rk4 less than 2.8 / angular frequency of the stiffest mode)\n";
   return EXIT_FAILED;
 }
 
@@ -101,9 +101,9 @@ int transient(const TransientOptions& options)
                 { "step", "", setup.step },
                 { "tolerance", "", setup.tolerance },
                 { "window_start", "", setup.window_start },
-                { "force_max_lowest", "largest wave generator force, lowest", result.window_lowest, "N" },
-                { "force_max_highest", "largest wave generator force, highest", result.window_highest, "N" },
-                { "force_max_mean", "largest wave generator force, mean", result.window_mean, "N" },
+                { "force_max_lowest", "largest force on a tooth, lowest in the window", result.window_lowest, "N" },
+                { "force_max_highest", "largest force on a tooth, highest in the window", result.window_highest, "N" },
+                { "force_max_mean", "largest force on a tooth, mean over the window", result.window_mean, "N" },
                 { "energy_supplied", "energy supplied", end.supplied, "J" },
                 { "energy_stored", "energy stored", end.stored, "J" },
                 { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
@@ -136,8 +136,8 @@ void declareTransient(OptionTable& table, TransientOptions& options)
 }
 
 const Subcommand TRANSIENT{ Subject::STUDY, "transient",
-                            "insertion of the wave generator with a mass at every tooth: the amplitude grows at "
-                            "constant speed and then stays constant; without circular spline",
+                            "insertion of the wave generator with a mass at every tooth: the wave amplitude grows at "
+                            "a constant speed and then stays constant; without circular spline",
                             declareTransient, transient };
 
 struct DynamicsOptions : CommonOptions
@@ -225,8 +225,8 @@ void declareDynamics(OptionTable& table, DynamicsOptions& options)
 
 const Subcommand DYNAMICS{
   Subject::STUDY, "dynamics",
-  "turning with a mass at every tooth, compared with the ring in equilibrium; wave generator at "
-  "constant speed, constant load, without dry friction",
+  "turning with a mass at every tooth, compared with the ring in equilibrium. Speed of the wave "
+  "generator and load are constant. There is no dry friction",
   declareDynamics, dynamics
 };
 
@@ -269,14 +269,14 @@ int ratchet(const RatchetOptions& options)
   const RatchetRow& peak = result.peak;
   printReport(options.json, { { "end", "end", endOf(result.end) },
                               { "peak.torque", "largest torque", peak.torque, "N.m" },
-                              { "peak.output_angle", "output angle there", peak.output_angle, "rad" },
-                              { "peak.wave_amplitude", "wave amplitude left", peak.wave_amplitude, "m" },
+                              { "peak.output_angle", "output angle at the largest torque", peak.output_angle, "rad" },
+                              { "peak.wave_amplitude", "wave amplitude that remains", peak.wave_amplitude, "m" },
                               { "peak.lobe_force", "force on each lobe", peak.lobe_force, "N" },
                               { "peak.depth_max", "deepest tooth", peak.depth_max, "m" },
                               { "peak.mesh_force_max", "mesh force, largest", peak.mesh_force_max, "N" },
                               { "peak.wave_generator_force_max", "wave generator force, largest",
                                 peak.wave_generator_force_max, "N" },
-                              { "peak.snaps", "snaps before", peak.snaps },
+                              { "peak.snaps", "snaps before the largest torque", peak.snaps },
                               { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
                               { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
                               { "rows", "", Table(RATCHET_COLUMNS, result.rows).rows() } });
@@ -285,7 +285,7 @@ int ratchet(const RatchetOptions& options)
     std::cerr << "joint_twin: the search ended, because the ring has no equilibrium one step of "
               << shortNumber(options.angle_step) << " rad beyond "
               << shortNumber(result.rows.empty() ? 0.0 : result.rows.back().output_angle)
-              << " rad; the torque has not decreased, so its largest value is a lower bound of the jump\n";
+              << " rad; the torque has not decreased, so its largest value is a lower bound of the jump's torque\n";
     return EXIT_FAILED;
   }
   return EXIT_DONE;
