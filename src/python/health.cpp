@@ -82,12 +82,11 @@ py::dict alternativesOf(const Assessment& assessment)
 void bindReport(py::module& module)
 {
   auto health = py::class_<HealthReport>(
-      module, "Health",
-      "Health of the simulated drive at one instant, as in Health.msg. A value is None while it is not valid.");
+      module, "Health", "Health of the simulated drive at one instant, as in Health.msg. An invalid value is None.");
   health
       .def_property_readonly(
           "transmission_ratio", [](const HealthReport& self) { return optional(self.motion.transmission_ratio); },
-          "motor angle over joint angle, over the last motor turn [-] or None")
+          "change of the motor angle / change of the joint angle, over the last motor turn [-] or None")
       .def_property_readonly(
           "torsion", [](const HealthReport& self) { return self.motion.torsion; },
           "motor angle / nominal ratio - joint angle [rad]")
@@ -108,7 +107,7 @@ void bindReport(py::module& module)
           "sum of mesh forces at each lobe of the wave generator [N]: tuple of 2")
       .def_property_readonly(
           "lobe_asymmetry", [](const HealthReport& self) { return self.lobes.asymmetry; },
-          "(first - second) / (first + second) mesh force, 0 without load [-]")
+          "(first - second) / (first + second), from lobe_mesh_force; 0 without load [-]")
       .def_readonly(
           "mesh_force_error", &HealthReport::mesh_force_error,
           "expected rms error of a loaded tooth's force at this speed and load, because the ring has no inertia [N]")
@@ -117,8 +116,8 @@ void bindReport(py::module& module)
           "sum of the wave generator's contact forces [N]")
       .def_property_readonly(
           "solver_state", [](const HealthReport& self) { return solverStateName(self.solver_state); },
-          "state of the solver: 'OK'; 'DEGRADED': steps were cut, too long, or a tooth jumped; 'FAILED': a step did "
-          "not converge");
+          "state of the solver: 'OK'; 'DEGRADED': a step was divided or too long, or a tooth jumped; 'FAILED': a step "
+          "did not converge");
   addText(health);
 }
 
@@ -136,7 +135,7 @@ void bindIndicators(py::module& module)
           "mean magnitude of the motor's speed [rad/s]")
       .def_property_readonly(
           "direction", [](const SignalIndicators& self) { return self.point.direction; },
-          "share of forward travel less share of backward travel, -1 ... 1 [-]")
+          "share of forward travel - share of backward travel, -1 ... 1 [-]")
       .def_property_readonly(
           "load", [](const SignalIndicators& self) { return self.point.load; },
           "mean magnitude of the load torque; nan: unknown [N.m]")
@@ -151,7 +150,7 @@ void bindIndicators(py::module& module)
           "coefficient of the load torque for the cosine of the output angle; nan: unknown [N.m]")
       .def_property_readonly(
           "inertia", [](const SignalIndicators& self) { return self.point.inertia; },
-          "inertia at the joint, the drive's own included: motor torque over acceleration [kg.m^2]")
+          "inertia at the joint with that of the drive: motor torque / acceleration [kg.m^2]")
       .def_property_readonly(
           "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
           "mean temperature; nan: not measured [degC]")
@@ -186,7 +185,7 @@ void bindAssessment(py::module& module)
       .def_readonly("value", &Evidence::value, "value in the indicator's unit")
       .def_readonly("expected", &Evidence::expected,
                     "mean of a sound drive at this operating point, in the indicator's unit")
-      .def_readonly("score", &Evidence::score, "normal score of the deviation [-]");
+      .def_readonly("score", &Evidence::score, "deviation as a standard normal deviate [-]");
   addText(evidence);
 
   auto assessment =
@@ -199,7 +198,7 @@ void bindAssessment(py::module& module)
           "'OTHER_PAYLOAD'. The level 'OK' means that the drive is sound only in the state 'ASSESSED'")
       .def_readonly(
           "windows_here", &Assessment::windows_here,
-          "number of windows at the last operating point: in its reference while learning, then compared with it [-]")
+          "number of windows at the last operating point: in the reference while LEARNING, later compared with it [-]")
       .def_readonly("windows_needed", &Assessment::windows_needed,
                     "number of windows that a reference or a verdict needs [-]")
       .def_property_readonly(
@@ -209,15 +208,14 @@ void bindAssessment(py::module& module)
           "most likely cause; 'none' at level OK, or if no known fault explains the deviation")
       .def_readonly("confidence", &Assessment::confidence, "probability of the cause, 0 at level OK [-]")
       .def_readonly("severity", &Assessment::severity,
-                    "mean severity of the fault, if this is the cause; 0 with 'none' [-]")
+                    "mean severity of the fault `cause`; 0 if the cause is 'none' [-]")
       .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of the severity [-]")
-      .def_property_readonly(
-          "alternatives", &alternativesOf,
-          "further causes with similar effect, until 90 % probability is reached: {cause: probability [-]}")
+      .def_property_readonly("alternatives", &alternativesOf,
+                             "next likely causes, until all probabilities add up to 90 %: {cause: probability [-]}")
       .def_readonly("largest_score", &Assessment::largest_score,
-                    "largest score of the last windows' mean over the threshold; beyond 1 it is an alarm [-]")
+                    "largest score of the last windows' mean / threshold; a ratio beyond 1 is an alarm [-]")
       .def_property_readonly("evidence", &evidenceOf,
-                             "indicators beyond the threshold, strongest first: list of Evidence");
+                             "indicators whose scores exceed the threshold, largest score first: list of Evidence");
   addText(assessment);
 }
 }  // namespace

@@ -15,8 +15,8 @@ void bindErrors(py::module& module)
   module.attr("InputError").attr("__doc__") =
       "Invalid input; the text names key, value, unit and range, or file and line.";
   module.attr("ParameterError").attr("__doc__") =
-      "A parameter that is missing, misspelt, mistyped or out of range, or two that contradict each other.";
-  module.attr("NotConverged").attr("__doc__") = "The ring has no equilibrium; the text gives advice.";
+      "A parameter that is missing, misspelt, mistyped or out of range, or that contradicts another parameter.";
+  module.attr("NotConverged").attr("__doc__") = "The solver found no equilibrium of the ring; the text gives advice.";
 }
 }  // namespace
 

@@ -156,10 +156,8 @@ void bindFaults(py::module& module)
       .def(py::init(&makeFault), py::arg("kind"), py::arg("severity"), py::arg("place") = py::none(),
            py::arg("onset") = 0.0,
            "kind: see fault_kinds(); severity: 0 (none) ... 1 [-]; place: number of tooth, segment, lobe or ball from "
-           "0 on, -1: the "
-           "whole member, None: the first place that the kind allows; onset: delay after the start, or after the stamp "
-           "of its "
-           "injection [s].")
+           "0 on, -1: the whole member, None: the first place that the kind allows; onset: delay after the start, or "
+           "after the stamp of its injection [s].")
       .def_property_readonly(
           "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
       .def_readonly("severity", &Fault::severity, "0 none ... 1 [-]")
@@ -406,11 +404,10 @@ void bindParameters(py::module& module)
                             "units, temperatures in degC.\n\n"
                             "Parameters(*overlays, config_dir=''): the default configuration, changed by the overlays; "
                             "later ones win. An overlay is a YAML file as for the tool's --config, for example "
-                            "'joints/elbow.yaml', or a dict of keys "
-                            "and values, as for --set. "
-                            "config_dir: directory of another default configuration.\n\n"
-                            "Setting a value checks all parameters at once. ParameterError names key, "
-                            "value, unit and range, and leaves everything unchanged.")
+                            "'joints/elbow.yaml', or a dict of keys and values, as for --set. config_dir: directory of "
+                            "another default configuration.\n\n"
+                            "Setting a value checks all parameters at once. ParameterError names key, value, unit and "
+                            "range, and leaves everything unchanged.")
       .def(py::init(&configurationOf), "Parameters(*overlays, config_dir='')")
       .def("__getitem__", &Configuration::value, py::arg("key"),
            "Returns the value of a key; a list of numbers is a tuple.")
@@ -441,8 +438,7 @@ void bindParameters(py::module& module)
                   "Returns unit, range and meaning of a key as a Field. Raises KeyError.")
       .def_property("faults", &Configuration::faults, &Configuration::setFaults,
                     "Faults that are active at the start or set in later: list of Fault. It is set as a whole, to one "
-                    "or several; "
-                    "texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
+                    "or several; texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
       .def(
           "describe", [](const Configuration& self) { return describeParameters(self.values()); },
           "Returns a text of all keys, values, units and meanings, one a line.")

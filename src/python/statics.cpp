@@ -19,7 +19,7 @@
 
 namespace hjt
 {
-/// A row of quasi-static turning.
+/// One position of the wave generator in a quasi-static turn.
 struct TurnValues
 {
   double wave_generator_angle;
@@ -29,7 +29,7 @@ struct TurnValues
   double housing_torque;
 };
 
-/// A row of the losses. Names are those of `joint_twin losses --json`.
+/// Losses at one speed and load. The fields have the names of `joint_twin losses --json`.
 struct LossValues
 {
   double motor_speed;
@@ -49,7 +49,7 @@ struct LossValues
 
 namespace
 {
-/// Adds a vector of a class as an array that is a view of the vector.
+/// Adds to a Python class a property: an array that is a view of the vector `values`.
 template <class Class, class Values>
 void addArray(Class& type, const char* name, std::vector<double> Values::*values, const char* meaning)
 {
@@ -57,7 +57,7 @@ void addArray(Class& type, const char* name, std::vector<double> Values::*values
       name, [values](const py::object& self) { return viewOf(self.cast<const Values&>().*values, self); }, meaning);
 }
 
-/// Index of a place by its name. @throws InputError.
+/// Index of the place of a stress by its name. @throws InputError for an unknown name.
 std::size_t stressPlace(const std::string& name)
 {
   std::string names;
@@ -84,7 +84,7 @@ void requireFinite(const char* name, const std::vector<double>& values)
   }
 }
 
-/// Parameters for an analysis with faults. @throws ParameterError if a fault cannot act in it.
+/// Parameters for an analysis. @throws ParameterError if a configured fault has no effect in this analysis.
 Parameters analysed(const Configuration& parameters, Analysis analysis)
 {
   requireFaultsAct(parameters.values(), analysis);
@@ -126,7 +126,6 @@ std::vector<StiffnessRow> stiffness(const Configuration& parameters, const std::
       [&, given = analysed(parameters, Analysis::RING)]
       {
         InterruptCheck check;
-        // The rows are independent of each other.
         for (const double torque : torques)
         {
           rows.push_back(std::move(analyseStiffness(given, angle, { torque }).front()));
@@ -234,27 +233,29 @@ void bindTeeth(py::module& module)
 {
   auto teeth = py::class_<ToothTable>(module, "ToothTable",
                                       "Values of every tooth in one equilibrium: arrays of shape (teeth,), index = "
-                                      "tooth. They are views of the result's memory, which they keep alive.");
+                                      "tooth. The arrays are views of the result's memory and keep it alive.");
   addArray(teeth, "tooth_x", &ToothTable::tooth_x, "x of the tooth point [m]");
   addArray(teeth, "tooth_y", &ToothTable::tooth_y, "y of the tooth point [m]");
   addArray(teeth, "radius", &ToothTable::radius, "distance of the tooth point from the axis [m]");
   addArray(teeth, "angle_deviation", &ToothTable::angle_deviation,
-           "deviation of the tooth point's angle from rest [rad]");
-  addArray(teeth, "wave_generator_force", &ToothTable::wave_generator_force, "[N]");
+           "angle of the tooth point minus its angle at rest [rad]");
+  addArray(teeth, "wave_generator_force", &ToothTable::wave_generator_force, "force of the wave generator [N]");
   addArray(teeth, "rim_tension", &ToothTable::rim_tension, "tension of the rim to the next tooth [N]");
   addArray(teeth, "bending_force", &ToothTable::bending_force, "bending force of the segment to the next tooth [N]");
   addArray(teeth, "mesh_force", &ToothTable::mesh_force,
            "normal force on the flank, > 0 leading, < 0 trailing flank [N]");
   addArray(teeth, "stress_tooth_space", &ToothTable::stress_tooth_space,
            "nominal normal stress in the tooth space [Pa]");
-  addArray(teeth, "stress_transition", &ToothTable::stress_transition, "nominal normal stress at the transition [Pa]");
+  addArray(teeth, "stress_transition", &ToothTable::stress_transition,
+           "nominal normal stress where the rim meets the cup [Pa]");
   addArray(teeth, "stress_flange", &ToothTable::stress_flange, "nominal normal stress at the flange [Pa]");
   addArray(teeth, "across", &ToothTable::across,
-           "position of the tooth across its space of the circular spline; empty without circular spline [m]");
+           "position of the tooth across its space; empty without circular spline [m]");
   addArray(teeth, "depth", &ToothTable::depth, "depth of the tooth in its space; empty without circular spline [m]");
   addArray(teeth, "tilt", &ToothTable::tilt,
            "angle of the tooth against the axis of the space; empty without circular spline [rad]");
-  addArray(teeth, "gap", &ToothTable::gap, "distance to the nearer flank; empty without circular spline [m]");
+  addArray(teeth, "gap", &ToothTable::gap,
+           "distance from the tooth to the nearer flank; empty without circular spline [m]");
   addText(teeth);
 }
 
@@ -283,16 +284,16 @@ void bindInsertion(py::module& module)
       .def_readonly("wave_generator_force", &FitCheck::wave_generator_force,
                     "sum of the wave generator's forces over the teeth, without load [N]")
       .def_readonly("wave_generator_force_insertion", &FitCheck::wave_generator_force_insertion,
-                    "that sum without the circular spline [N]")
+                    "sum of the wave generator's forces over the teeth, without circular spline [N]")
       .def_property_readonly("jams", &FitCheck::jams,
                              "whether the teeth load the wave generator more than the bent rim does");
   addText(check);
   module.def("check_fit", &fit, py::arg("parameters"),
-             "Checks whether the teeth fit without load, for use after every change of a gear. Returns FitCheck. "
-             "Raises NotConverged.");
+             "Checks whether the teeth fit into each other without load. Use it after each change of a gear. Returns "
+             "FitCheck. Raises NotConverged.");
 }
 
-/// Parameters of the wanted gear, with the rule for each of its parameters.
+/// Parameters of the designed gear, and the rule by which each derived parameter was found.
 py::tuple design(const Configuration& parameters, double size, int ratio, const std::optional<double>& bore_radius,
                  const std::optional<double>& rim_thickness, const std::optional<double>& face_width,
                  const std::vector<double>& stiffness, const std::vector<double>& breakpoints,
@@ -318,12 +319,9 @@ void bindDesign(py::module& module)
       py::arg("stiffness") = std::vector<double>(), py::arg("breakpoints") = std::vector<double>(),
       py::arg("ratings") = std::vector<double>(), py::arg("starting_torque") = py::none(),
       py::arg("no_load_torque") = py::none(),
-      "Designs a gear of the family by size (25: that of parameters, 5 ... 100) and ratio (circular spline held, 30 "
-      "... "
-      "320), as `joint_twin gear` does (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH, ratio 100, or a "
-      "variant. "
-      "bore_radius and rim_thickness of the flexspline, face_width of the teeth [m], if known. From a "
-      "catalogue of your own: "
+      "Designs a gear by size (5 ... 100) and ratio with the circular spline held (30 ... 320), as `joint_twin gear` "
+      "does (docs/own_gear.md). parameters: Parameters of HFUS-25-2SH (size 25, ratio 100), or of a variant. "
+      "bore_radius and rim_thickness of the flexspline, face_width of the teeth [m], if known. From your catalogue: "
       "stiffness K1, K2, K3 [N.m/rad], breakpoints T1, T2, ratings (rated, average, repeated peak, momentary peak), "
       "starting_torque, no_load_torque [N.m].\n\n"
       "Returns Parameters of the whole joint and a dict of the derived parameters: key to rule. Raises "
@@ -333,15 +331,16 @@ void bindDesign(py::module& module)
       [](const Configuration& parameters)
       { return withoutLock([&, values = parameters.values()] { return gearWarnings(values); }); },
       py::arg("parameters"),
-      "Warnings of inconsistent values of the gear, as the tool prints them: list of str, each with key, value "
-      "and "
+      "Warnings of inconsistent values of the gear, as the tool prints them: list of str, each with key, value and "
       "expected value.");
 }
 
 void bindStiffness(py::module& module)
 {
-  auto row = py::class_<StiffnessRow>(module, "StiffnessRow", "The gear under one load, wave generator locked.");
-  row.def_readonly("torque", &StiffnessRow::torque, "load on the circular spline; > 0 turns the output backwards [N.m]")
+  auto row =
+      py::class_<StiffnessRow>(module, "StiffnessRow", "State of the gear under a load with locked wave generator.");
+  row.def_readonly("torque", &StiffnessRow::torque,
+                   "load on the circular spline; > 0 turns the output towards negative angles [N.m]")
       .def_readonly("output_angle", &StiffnessRow::output_angle, "angle of the output relative to zero load [rad]")
       .def_readonly("wave_generator_torque", &StiffnessRow::wave_generator_torque,
                     "torque of the flexspline on the wave generator [N.m]")
@@ -359,9 +358,9 @@ void bindStiffness(py::module& module)
            "force on each ball of the bearing, shape (balls,); empty unless contact.support = single_balls [N]");
   addText(row);
   module.def("analyse_stiffness", &stiffness, py::arg("parameters"), py::arg("torques"), py::arg("angle") = 0.0,
-             "Computes the torsion under load without friction, wave generator locked at angle [rad]. Returns a list "
-             "of StiffnessRow, one for "
-             "each of the torques, loads on the circular spline [N.m]. Raises NotConverged.");
+             "Computes the torsion under load without friction. The wave generator is locked at angle [rad]; torques "
+             "are loads on the circular spline [N.m]. Returns a list of StiffnessRow, one for each torque. Raises "
+             "NotConverged.");
   module.def(
       "endurance_share",
       [](const Configuration& parameters, const std::string& place, const StressCycle& cycle) {
@@ -369,10 +368,8 @@ void bindStiffness(py::module& module)
             .enduranceShare(stressPlace(place), cycle);
       },
       py::arg("parameters"), py::arg("place"), py::arg("cycle"),
-      "Ratio of a StressCycle's equivalent amplitude to the endurance limit, at the notch of 'tooth space', "
-      "'transition' or 'flange', "
-      "by "
-      "Goodman and Peterson [-] (docs/life.md): float.");
+      "Returns the equivalent amplitude of a StressCycle over the endurance limit [-], by Goodman and Peterson "
+      "(docs/life.md): float. place of the notch: 'tooth space', 'transition' or 'flange'.");
 }
 
 void bindSlowMotion(py::module& module)
@@ -390,7 +387,7 @@ void bindSlowMotion(py::module& module)
   module.def(
       "analyse_losses", &losses, py::arg("parameters"), py::arg("speeds"), py::arg("loads"), py::arg("positions") = 16,
       "Computes friction and efficiency at constant motor speeds [rad/s] and loads [N.m]; positions: number of wave "
-      "generator angles in a tooth pitch.\n\n"
+      "generator angles per tooth pitch, over which quantities are averaged.\n\n"
       "Returns a structured array of shape (loads, speeds): motor_speed [rad/s], load_torque, load_reduced [N.m]; "
       "bearing, interface, flexing, mesh, cup, damping, output, motor, gear_loss: torques at the motor shaft "
       "[N.m]; gear_efficiency [-]. Raises NotConverged.");
@@ -409,17 +406,17 @@ void bindSlowMotion(py::module& module)
                              "loads, from +amplitude to -amplitude and back, shape (points,) [N.m]")
       .def_property_readonly(
           "output_angle", &pointsOf<&TorsionPoint::output_angle>,
-          "angles from the position without load, > 0 in the load's direction, shape (points,) [rad]")
-      .def_readonly("hysteresis", &TorsionLoop::hysteresis, "width of the loop at no load [rad]")
+          "output angles relative to the position without load, > 0 in the load's direction, shape (points,) [rad]")
+      .def_readonly("hysteresis", &TorsionLoop::hysteresis, "width of the loop at zero load [rad]")
       .def_readonly("lost_motion", &TorsionLoop::lost_motion,
-                    "angle between the middles of the loop at plus and minus the lost motion torque [rad]");
+                    "angle between the middles of the loop at + and - lost_motion_torque [rad]");
   addText(loop);
   module.def(
       "analyse_torsion_loop", &torsionLoop, py::arg("parameters"), py::arg("amplitude"), py::arg("lost_motion_torque"),
       py::arg("steps") = 200,
       "Computes the torsion with locked wave generator for a load that cycles slowly between plus and minus amplitude "
-      "[N.m]; steps: number of angles of a sweep; "
-      "lost_motion_torque: for example 4 % of the rated torque [N.m]. Returns TorsionLoop. Raises NotConverged.");
+      "[N.m]. steps: number of angles from one end of the cycle to the other. lost_motion_torque: load at which the "
+      "lost motion is measured, for example 4 % of the rated torque [N.m]. Returns TorsionLoop. Raises NotConverged.");
 }
 
 template <std::size_t PLACE>
@@ -443,11 +440,11 @@ void bindToothValues(py::module& module)
   auto forces = py::class_<ToothForces, std::shared_ptr<ToothForces>>(
       module, "ToothForces",
       "Forces on every tooth of the flexspline at one instant, as in ContactForces.msg: arrays of shape (teeth,), "
-      "index = tooth, counter-clockwise from the flexspline's x axis. They are views of the twin's memory: the next "
-      "call of Twin.tooth_forces() overwrites them; copy() keeps them.");
+      "index = tooth, counter-clockwise from the flexspline's x axis. The arrays are views of the twin's memory: the "
+      "next call of Twin.tooth_forces() overwrites them. copy() returns arrays that stay.");
   addArray(forces, "wave_generator_force", &ToothForces::wave_generator_force,
            "normal force of the wave generator on the flexspline, >= 0 [N]");
-  addArray(forces, "rim_tension", &ToothForces::rim_tension, "tension to the next tooth, pull > 0 [N]");
+  addArray(forces, "rim_tension", &ToothForces::rim_tension, "tension of the rim to the next tooth; > 0 pulls [N]");
   addArray(forces, "bending_force", &ToothForces::bending_force,
            "restoring force of the bending couple of the segment to the next tooth [N]");
   addArray(forces, "mesh_force", &ToothForces::mesh_force,
@@ -465,17 +462,15 @@ void bindToothValues(py::module& module)
   cycle.def_readonly("lowest", &StressCycle::lowest, "least normal stress [Pa]")
       .def_readonly("highest", &StressCycle::highest, "largest normal stress [Pa]")
       .def_readonly("shear", &StressCycle::shear, "shear stress, constant over the turn [Pa]")
-      .def_property_readonly("amplitude", &StressCycle::amplitude, "half of highest less lowest [Pa]")
+      .def_property_readonly("amplitude", &StressCycle::amplitude, "half of the difference highest - lowest [Pa]")
       .def_property_readonly("mean", &StressCycle::mean, "mean of highest and lowest [Pa]")
       .def_property_readonly("largest", &StressCycle::largest, "largest equivalent stress by von Mises [Pa]");
   addText(cycle);
 
   auto stress = py::class_<ToothStress, std::shared_ptr<ToothStress>>(
       module, "ToothStress",
-      "Nominal stress of the flexspline (without notch factor), as in Stress.msg: arrays of shape (teeth,), which are "
-      "views. Those "
-      "of "
-      "a twin are overwritten by the next call of Twin.tooth_stress(); copy() keeps them.");
+      "Nominal stress of the flexspline (without notch factor), as in Stress.msg: arrays of shape (teeth,). The arrays "
+      "are views of memory that the next call of Twin.tooth_stress() overwrites. copy() returns arrays that stay.");
   stress
       .def_property_readonly("tooth_space", &stressView<0>,
                              "normal stress around the rim in the spaces beside each tooth [Pa]")
@@ -484,13 +479,13 @@ void bindToothValues(py::module& module)
       .def_property_readonly("flange", &stressView<2>, "normal stress along the axis, at the flange of the cup [Pa]")
       .def_property_readonly(
           "shear", [](const ToothStress& self) { return py::tuple(py::cast(self.shear)); },
-          "shear stress by place, constant around the circumference [Pa]: tuple of 3, for tooth space, transition, "
-          "flange")
+          "shear stress at each place, constant around the circumference [Pa]: tuple of 3, for tooth space, "
+          "transition, flange")
       .def(
           "cycle", [](const ToothStress& self, const std::string& place) { return self.cycle(stressPlace(place)); },
           py::arg("place"),
-          "Returns the StressCycle of one tooth in a turn, for equal teeth. place: 'tooth space', "
-          "'transition' or 'flange'. The stress at the notch is larger by stress.concentration.")
+          "Returns the StressCycle of one tooth over a turn of the motor, for equal teeth. place: 'tooth space', "
+          "'transition' or 'flange'. The stress at the notch is larger by the factor stress.concentration.")
       .def(
           "worst_tooth",
           [](const ToothStress& self, const std::string& place) { return self.worstTooth(stressPlace(place)); },

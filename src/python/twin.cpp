@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_TIME = 9e9;  // [s]; the range of a stamp
+constexpr double LARGEST_TIME = 9e9;  // limit of a stamp [s]
 
 /// Checks a stamp. @throws InputError beyond +-MAX_STAMP.
 Stamp checked(Stamp stamp)
@@ -87,10 +87,8 @@ void bindInputs(py::class_<TwinObject>& twin)
           [](TwinObject& self, double torque, const std::optional<Stamp>& at)
           { push(self, InputKind::MOTOR_TORQUE, torque, at, "torque"); },
           py::arg("torque"), stamp,
-          "Commands the motor torque from stamp on [N.m]; it becomes zero after input.command_timeout. stamp [ns]: "
-          "None is "
-          "the "
-          "next step; an input in the past counts as late and acts at once.")
+          "Commands the motor torque from stamp on [N.m]; the torque becomes zero after input.command_timeout. "
+          "stamp [ns]: None is the next step. An input in the past acts at once and is counted as late.")
       .def(
           "command_load_torque",
           [](TwinObject& self, double torque, const std::optional<Stamp>& at)
@@ -101,7 +99,7 @@ void bindInputs(py::class_<TwinObject>& twin)
           "command_brake",
           [](TwinObject& self, bool engaged, const std::optional<Stamp>& at)
           { push(self, InputKind::BRAKE, engaged ? 1.0 : 0.0, at, "engaged"); },
-          py::arg("engaged"), stamp, "Engages or releases the brake, after brake.delay.")
+          py::arg("engaged"), stamp, "Engages (True) or releases the brake. The brake acts brake.delay after stamp.")
       .def(
           "set_temperature",
           [](TwinObject& self, double degrees, const std::optional<Stamp>& at)
@@ -110,9 +108,8 @@ void bindInputs(py::class_<TwinObject>& twin)
           "Sets the temperature of the drive, or of its surroundings with thermal.model = two_nodes [degC], -40 ... "
           "150.")
       .def("inject_fault", &injectFault, py::arg("fault"), stamp,
-           "Injects a Fault, or its text 'KIND:SEVERITY[:PLACE[:ONSET]]', which sets in onset after stamp. Severity 0 "
-           "removes it. "
-           "While a fault is active that was not active at the start, all teeth are solved at every step. Raises "
+           "Injects a Fault or its text 'KIND:SEVERITY[:PLACE[:ONSET]]'. The fault begins at stamp + onset. Severity 0 "
+           "removes the fault. While a fault acts that did not act at the start, each step solves all teeth. Raises "
            "ParameterError.");
 }
 
@@ -130,12 +127,11 @@ void bindMarch(py::class_<TwinObject>& twin)
           },
           none("steps"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
           py::arg("every") = 1, none("out"), none("progress"),
-          "Advances by a block of steps without the interpreter's lock. Ctrl-C works and leaves the twin at the step "
-          "that it "
-          "had reached.\n\n"
-          "steps: their number; None: the length of the arrays. motor_torque [N.m], clamped to motor.torque_limit and "
-          "counted; load_torque [N.m], within output.load_torque_limit; brake (0 or 1); temperature [degC], "
-          "-40 ... 150: a number, or an array of shape (steps,) with the value of each step; None: the value that was "
+          "Advances by a block of steps without the interpreter's lock. Ctrl-C ends the call; the twin stays at the "
+          "step that it had reached.\n\n"
+          "steps: number of steps; None: the length of the arrays. motor_torque [N.m], clamped to motor.torque_limit "
+          "and counted; load_torque [N.m], within output.load_torque_limit; brake (0 or 1); temperature [degC], -40 "
+          "... 150: a number, or an array of shape (steps,) with the value of each step; None: the value that was "
           "commanded before. A given torque does not time out during the run. every: number of steps between two rows. "
           "out: array of an earlier run that is overwritten; None: a new array. progress: called with 0 ... 1, at most "
           "twenty times a second and at the end.\n\n"
@@ -149,7 +145,7 @@ void bindMarch(py::class_<TwinObject>& twin)
           },
           py::arg("time"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
           py::arg("every") = 1, none("out"), none("progress"),
-          "Advances as run does, up to the last instant not after time [s].");
+          "Advances as run does, up to the last instant that is not after time [s].");
 }
 
 void bindReadings(py::class_<TwinObject>& twin)
@@ -167,27 +163,25 @@ void bindReadings(py::class_<TwinObject>& twin)
           "whether the present instant was computed from the response surface instead of all teeth")
       .def_property_readonly(
           "counters", [](TwinObject& self) { return namedCounters(self.twin().counters()); },
-          "counts since reset by name: dict of str to int")
-      .def_property_readonly("active_faults", &activeFaults, "list of Fault, by kind and place")
+          "counts of events since the last reset, by name: dict of str to int")
+      .def_property_readonly("active_faults", &activeFaults,
+                             "faults that act at the present instant: list of Fault, ordered by kind and place")
       .def_property_readonly(
           "parameters", [](const TwinObject& self) { return self.parameters(); },
           "Parameters that cannot be changed; set values in a copy and make a Twin of it")
       .def("tooth_forces", &TwinObject::toothForces,
            "Returns the forces on every tooth at the present instant as ToothForces, views that the next call "
-           "overwrites. On the "
-           "response surface this solves a full ring. Raises NotConverged.")
+           "overwrites. On the response surface this solves a full ring. Raises NotConverged.")
       .def("tooth_stress", &TwinObject::toothStress,
            "Returns the stress of the flexspline at every tooth at the present instant as ToothStress, views that the "
-           "next call "
-           "overwrites. Raises NotConverged.")
+           "next call overwrites. Raises NotConverged.")
       .def(
           "health",
           [](TwinObject& self, const std::optional<Stamp>& since)
           { return self.twin().health(since.value_or(std::numeric_limits<Stamp>::min())); },
           py::arg("since") = py::none(),
-          "Returns the Health at the present instant. since [ns]: the solver's state covers the steps after it; None: "
-          "of "
-          "all steps since reset.")
+          "Returns the Health at the present instant. solver_state covers the steps after since [ns]; None: all steps "
+          "after the last reset.")
       .def_property(
           "watch_signals", [](TwinObject& self) { return self.twin().watchesSignals(); },
           [](TwinObject& self, bool on) { self.twin().watchSignals(on); },
@@ -229,21 +223,21 @@ void bindTwin(py::module& module)
       "Twin(parameters, cache=None, progress=None) inserts the wave generator; with solver.scene = auto it builds the "
       "response surface (seconds) or reads it from the cache. parameters: Parameters, copied. cache: directory of "
       "response surfaces; None: that of the tool, '': none. progress: called with 0 ... 1 during a build. "
-      "ParameterError.\n\n"
-      "All steps have equal length: equal inputs give equal numbers, step by step or in blocks, and "
-      "as "
-      "the tool and the node. Only one thread at a time may use a twin; several twins may run in different threads.");
+      "Raises ParameterError.\n\n"
+      "All steps have equal length. Equal inputs give equal numbers, step by step or in blocks, here, in the tool and "
+      "in the node. Only one thread at a time may use a twin; several twins may run in different threads.");
   twin.def(py::init<const Configuration&, const std::optional<std::string>&, const py::object&>(),
            py::arg("parameters"), py::arg("cache") = py::none(), py::arg("progress") = py::none())
       .def(
           "reset", [](TwinObject& self, Stamp stamp) { self.twin().reset(checked(stamp)); }, py::arg("stamp") = 0,
-          "Restarts at rest, zero angles, at the first instant not before stamp [ns], with the configured faults.")
+          "Restarts at rest with angles 0 and the configured faults, at the first instant that is not before stamp "
+          "[ns].")
       .def("__copy__", &copyOf,
-           "Returns a copy at the same instant, with waiting inputs and learned references; both continue with equal "
+           "Returns a copy at the same instant, with waiting inputs and learned references. Twin and copy give equal "
            "numbers.")
       .def(
           "__deepcopy__", [](TwinObject& self, const py::dict&) { return copyOf(self); }, py::arg("memo"),
-          "Returns a copy, as copy.copy.")
+          "Returns a copy like that of copy.copy.")
       .def(
           "__reduce__",
           [](TwinObject&) -> py::object

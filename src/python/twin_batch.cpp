@@ -446,8 +446,7 @@ void bindSteps(py::class_<TwinBatch>& batch)
           "Advances by steps of 1 / solver.rate with constant inputs, for use in a closed loop.\n\n"
           "motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a number for all, or an array of shape "
           "(n,); None: the value that was commanded before. A given torque does not time out during the steps. out: as "
-          "for "
-          "run.\n\n"
+          "for run.\n\n"
           "Returns a structured array of shape (n,) with dtype STEP_DTYPE: the twins after the last step. InputError.")
       .def(
           "run",
@@ -460,11 +459,9 @@ void bindSteps(py::class_<TwinBatch>& batch)
           py::arg("every") = 1, none("out"), none("progress"),
           "Advances all twins by a block of steps. Ctrl-C works and leaves all twins at the same step.\n\n"
           "steps, every: as for Twin.run. motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a "
-          "number; "
-          "an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: the value that was commanded before. "
-          "A given "
-          "torque does not time out during the run. out: array of an earlier call that is overwritten; None: a new "
-          "array. progress: as for Twin.run.\n\n"
+          "number; an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: the value that was commanded "
+          "before. A given torque does not time out during the run. out: array of an earlier call that is overwritten; "
+          "None: a new array. progress: as for Twin.run.\n\n"
           "Returns a structured array of shape (n, steps // every) with dtype STEP_DTYPE. Raises InputError.");
 }
 }  // namespace
@@ -475,15 +472,12 @@ void bindTwinBatch(py::module& module)
       module, "TwinBatch",
       "Twins that step together on all cores, without the interpreter's lock.\n\n"
       "TwinBatch(twins, n=None, cache=None, progress=None, threads=None). twins: Parameters or a Twin, of which n "
-      "copies "
-      "are made, alike to the noise of their sensors; or several of them, each with its own parameters and faults: "
-      "Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response surfaces are "
-      "shared. cache: as for Twin. progress: called with 0 ... 1 while the twins are made. threads: number of threads "
-      "with the "
-      "caller's; None: one for each processor. Raises InputError, ParameterError.\n\n"
+      "copies are made, alike to the noise of their sensors; or several of them, each with its own parameters and "
+      "faults: Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response "
+      "surfaces are shared. cache: as for Twin. progress: called with 0 ... 1 while the twins are made. threads: "
+      "number of threads with the caller's; None: one for each processor. Raises InputError, ParameterError.\n\n"
       "batch[i] is the i-th Twin, which may be reset, read or given a fault. Each twin gives the numbers that it would "
-      "give alone. A twin "
-      "without equilibrium keeps its state, with converged = False, and counts this in "
+      "give alone. A twin without equilibrium keeps its state, with converged = False, and counts this in "
       "counters['solver_failures']; the others continue.");
   batch
       .def(py::init(

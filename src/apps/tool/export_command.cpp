@@ -77,8 +77,8 @@ std::string missing(const ExportedJoint& joint, const Parameters& parameters, bo
   const auto text = [](double value) { return roundedText(value, 4); };
   std::string lines = "  Not represented: effect of load and temperature on the friction (here: no load, " +
                       text(parameters.input.temperature) +
-                      " degC), deviation of the friction\n  from a straight "
-                      "line over the speed (up to " +
+                      " degC), deviation of the friction\n"
+                      "  from a straight line over the speed (up to " +
                       text(joint.friction_deviation) + " N.m), stiffness that grows with the torque, " +
                       (has_stiffness ? "hysteresis of small swings" : "hysteresis") +
                       ", lost motion, kinematic error, backlash of the brake, faults.\n";

@@ -254,8 +254,7 @@ void declare(OptionTable& table, ImportOptions& options)
 
 const Subcommand IMPORT{ Subject::RECORDING, "import",
                          "convert a UR controller's CSV recording (columns timestamp, actual_q_N, actual_qd_N, "
-                         "actual_current_N, target_moment_N) "
-                         "to a bag for replay",
+                         "actual_current_N, target_moment_N) to a bag for replay",
                          declare, import };
 }  // namespace
 }  // namespace hjt

@@ -197,8 +197,8 @@ int printTrend(const JudgedTrend& options, const Trend& found)
 }
 
 const Subcommand TREND{ Subject::RECORDING, "trend",
-                        "change of each joint's friction over recordings of months. The verdict is the "
-                        "worst of the trends' verdicts and the verdict of the latest judged recording",
+                        "change of each joint's friction over recordings of months. The verdict is the worst of the "
+                        "trends' verdicts and the verdict of the latest judged recording",
                         declareJudging<TrendOptions>, runWatched<trend, printTrend, false, JudgedTrend> };
 
 struct PrintedIdentify : Printed<IdentifyOptions>
@@ -267,8 +267,7 @@ void declare(OptionTable& table, PrintedIdentify& options)
   table
       .flag("--controller", options.controller,
             "identify the gains of the arm's controller instead of the drives, from a table with target and actual "
-            "values of all "
-            "joints; the result is DIR/controller.yaml for `joint_twin arm --identified DIR`")
+            "values of all joints; the result is DIR/controller.yaml for `joint_twin arm --identified DIR`")
       .needs("--arm");
 }
 

@@ -268,8 +268,7 @@ void declare(OptionTable& table, SimulateOptions& options)
   table
       .add("--profile", options.profile,
            "CSV file with columns time [s], motor_torque [N.m] and optionally load_torque [N.m], brake (0 or 1); each "
-           "row "
-           "is valid until the next")
+           "row is valid until the next")
       .type("FILE.csv");
   table.oneOf({ "--torque", "--profile" });
   table.add("--load", options.load, "constant external torque at the output; > 0 resists positive motion [N.m]");

@@ -233,8 +233,7 @@ void declareStiffness(OptionTable& table, StiffnessOptions& options)
   table
       .flag("--teeth", options.teeth,
             "with --json, add every tooth's forces [N], nominal stresses [Pa], position in its space [m], tilt [rad] "
-            "and gap to the nearer "
-            "flank [m]")
+            "and gap to the nearer flank [m]")
       .needs("--json");
 }
 

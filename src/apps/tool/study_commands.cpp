@@ -225,8 +225,8 @@ void declareDynamics(OptionTable& table, DynamicsOptions& options)
 
 const Subcommand DYNAMICS{
   Subject::STUDY, "dynamics",
-  "turning with a mass at every tooth, compared with the ring in equilibrium. Speed of the wave "
-  "generator and load are constant. There is no dry friction",
+  "turning with a mass at every tooth, compared with the ring in equilibrium. Speed of the wave generator and load are "
+  "constant. There is no dry friction",
   declareDynamics, dynamics
 };
 
