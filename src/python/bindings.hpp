@@ -14,7 +14,7 @@
 #include "harmonic_joint_twin/solver/solve_status.hpp"
 #include "twin/step_counters.hpp"
 
-// The module as its user sees it. Names, units and shapes are in python/harmonic_joint_twin/_hjt.pyi.
+// Bindings of the Python module. The names, units and shapes of its members are in python/harmonic_joint_twin/_hjt.pyi.
 namespace hjt
 {
 namespace py = pybind11;
@@ -28,7 +28,7 @@ void bindTwinBatch(py::module& module);
 void bindStatics(py::module& module);
 void bindTracking(py::module& module);
 
-/// Counts by name: dict of str to int.
+/// Counters of steps by name: dict of str to int.
 inline py::dict stepCounters(const TwinCounters& counters)
 {
   py::dict named;
@@ -39,7 +39,7 @@ inline py::dict stepCounters(const TwinCounters& counters)
   return named;
 }
 
-/// Error without an equilibrium; in Python a RuntimeError.
+/// Error: the solver found no equilibrium. In Python a RuntimeError.
 class NotConverged : public std::runtime_error
 {
 public:
@@ -50,19 +50,19 @@ public:
   explicit NotConverged(const std::string& text) : std::runtime_error(text) {}
 };
 
-/// Thrown if a signal handler of Python raised; Python's error is already set.
+/// Thrown if a signal handler of Python has raised an exception. Python's error is then already set.
 struct Interrupted
 {
 };
 
-/// Throws `Interrupted` if a signal handler of Python raised, for example that of Ctrl-C. It checks at most twenty
-/// times a second, because taking the interpreter's lock can cost more than many steps.
+/// Throws `Interrupted` if a signal handler of Python has raised an exception, for example that of Ctrl-C. It checks at
+/// most twenty times a second, because taking the interpreter's lock can cost more than many steps.
 class InterruptCheck
 {
 public:
   InterruptCheck() : next_(now() + PERIOD) {}
 
-  /// @returns whether it has checked.
+  /// Checks if the last check is long enough ago. @returns whether it has checked.
   bool operator()()
   {
     const double time = now();
@@ -90,11 +90,11 @@ private:
   double next_;  // [s]
 };
 
-/// InterruptCheck of a run with a progress callback.
+/// An InterruptCheck that also calls the progress function of a run.
 class RunCheck
 {
 public:
-  /// `progress`: called with 0 ... 1, or Python's None.
+  /// `progress`: Python function that is called with the finished share 0 ... 1, or None.
   explicit RunCheck(const py::object& progress) : progress_(progress) {}
 
   /// Reports that `done` of `all` steps are finished.
@@ -140,21 +140,21 @@ auto withoutLock(const Work& work)
   }
 }
 
-/// A read-only array of `owner`'s memory, which it keeps alive.
+/// A read-only array that is a view of `values`, memory of `owner`. The array keeps `owner` alive.
 py::array_t<double> viewOf(const std::vector<double>& values, const py::object& owner);
 
 /// Text of the names and values of all properties of `object`.
 std::string describeObject(const py::object& object);
 
-/// Adds a text to a class of plain values.
+/// Gives a Python class of plain values a __repr__ that shows its properties.
 template <class Class>
 void addText(Class& type)
 {
   type.def("__repr__", [](const py::object& self) { return describeObject(self); });
 }
 
-/// Whether a call without the interpreter's lock uses a Python object, which other calls may not use then. The
-/// interpreter's lock protects this flag.
+/// Flag: a call without the interpreter's lock uses a Python object, and no other call may use the object meanwhile.
+/// The interpreter's lock protects the flag.
 class InUse
 {
 public:

@@ -5,7 +5,7 @@
 
 namespace hjt
 {
-/// Measured joint and prediction for a healthy one. Names are those of Comparison.msg.
+/// Measured values of a joint and predicted values of a sound joint. Comparison.msg has the same names.
 struct ComparisonRow
 {
   double time;

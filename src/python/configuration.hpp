@@ -14,25 +14,25 @@ constexpr const char* ORIGIN = "Python";  ///< origin of values from Python in e
 /// Adds keys and values to the map without checks of range. @throws ParameterError if a value has no valid type.
 void put(const py::dict& values, ParameterMap& map);
 
-/// Reads an overlay into the map without checks of range: a file, as given or in `directory`, or a dict.
+/// Reads an overlay into the map without checks of range. `what`: a dict, or a file, as named or in `directory`.
 /// @throws ParameterError, Python's TypeError.
 void readOverlay(const py::handle& what, const std::string& directory, ParameterMap& map);
 
-/// All parameters and the map they were read from. Setting a value checks all parameters; an error leaves everything
-/// unchanged.
+/// All parameters and the map from which they were read. Setting a value checks all parameters. After an error no value
+/// has changed.
 class Configuration
 {
 public:
   /// The default configuration, changed by overlays (files or dicts); later ones win.
-  /// `directory`: of the default configuration; empty: found as the tool does. @throws ParameterError.
+  /// `directory`: that of the default configuration; empty: the one that the tool uses. @throws ParameterError.
   Configuration(const py::args& overlays, const std::string& directory);
 
   const Parameters& values() const { return values_; }
   const ParameterMap& map() const { return map_; }
-  /// A copy with other values. @throws ParameterError.
+  /// A copy with the values of `map`. @throws ParameterError.
   Configuration with(const ParameterMap& map) const;
   Configuration copy() const;                         ///< copy that can be changed
-  Configuration frozen() const;                       ///< copy that cannot be changed: that of a twin
+  Configuration frozen() const;                       ///< copy that cannot be changed, for a twin
   bool operator==(const Configuration& other) const;  ///< whether values and faults are equal
 
   py::object value(const std::string& key) const;  ///< @throws py::key_error
@@ -43,7 +43,7 @@ public:
   py::list faults() const;
   void setFaults(const py::object& faults);  ///< sets one or several faults
 
-  /// All keys and values, for another process.
+  /// All keys and values, which `fromState` reads in another process.
   py::tuple state() const;
   static Configuration fromState(const py::tuple& state);
 
@@ -60,6 +60,6 @@ private:
   Parameters values_;
 };
 
-/// A checked fault from an object or from the tool's text KIND:SEVERITY[:PLACE[:ONSET]]. @throws ParameterError.
+/// A checked fault, from a Fault or from the text KIND:SEVERITY[:PLACE[:ONSET]]. @throws ParameterError.
 Fault faultOf(const py::handle& fault, const Parameters& parameters);
 }  // namespace hjt

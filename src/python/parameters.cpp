@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// A parameter with a value of any type.
+/// Description of a parameter, whose value may have any type.
 struct Field
 {
   std::string key;
@@ -151,7 +151,7 @@ Fault faultFrom(const py::tuple& parts)
 
 void bindFaults(py::module& module)
 {
-  auto fault = py::class_<Fault>(module, "Fault", "A fault of the gear, which its kind and place identify.");
+  auto fault = py::class_<Fault>(module, "Fault", "A fault of the gear. Its kind and place identify it.");
   fault
       .def(py::init(&makeFault), py::arg("kind"), py::arg("severity"), py::arg("place") = py::none(),
            py::arg("onset") = 0.0,
@@ -160,10 +160,10 @@ void bindFaults(py::module& module)
            "after the stamp of its injection [s].")
       .def_property_readonly(
           "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
-      .def_readonly("severity", &Fault::severity, "0 none ... 1 [-]")
+      .def_readonly("severity", &Fault::severity, "size of the fault, 0 (none) ... 1 [-]")
       .def_readonly("place", &Fault::place,
-                    "number of tooth, segment, lobe or ball from 0 on; -1: the whole member [-]")
-      .def_readonly("onset", &Fault::onset, "delay after the start, or after the stamp of the injection [s]")
+                    "number of the tooth, segment, lobe or ball from 0 on; -1: the whole member [-]")
+      .def_readonly("onset", &Fault::onset, "delay of the fault after the start, or after the stamp of injection [s]")
       .def(
           "__eq__", [](const Fault& self, const Fault& other) { return partsOf(self).equal(partsOf(other)); },
           py::is_operator(), py::arg("other"), "Whether kind, severity, place and onset are equal.")
@@ -176,7 +176,7 @@ void bindFaults(py::module& module)
           "name", [](const FaultDescription& self) { return self.name; }, "name for Fault and the tool's --fault")
       .def_property_readonly(
           "place", [](const FaultDescription& self) { return placeName(self.place); },
-          "kind of the place: tooth, segment, lobe, ball or -")
+          "kind of the place: tooth, segment, lobe, ball, or - without places")
       .def_readonly("whole", &FaultDescription::whole, "whether place -1, the whole member, is allowed")
       .def_property_readonly(
           "severity", [](const FaultDescription& self) { return self.severity; }, "size of the fault at severity 1")
@@ -243,7 +243,7 @@ void Configuration::requireChangeable() const
   if (is_frozen_)
   {
     throw py::type_error(
-        "the parameters of a twin cannot be changed; set values in parameters.copy() and make a new twin of it");
+        "the parameters of a twin cannot be changed; set values in parameters.copy() and make a new twin of the copy");
   }
 }
 
@@ -314,7 +314,7 @@ void Configuration::setFaults(const py::object& faults)
   }
   if (list.size() > MAX_FAULTS)
   {
-    throw ParameterError("faults: more than " + std::to_string(MAX_FAULTS));
+    throw ParameterError("faults: at most " + std::to_string(MAX_FAULTS) + " faults are allowed");
   }
   ParameterMap map = map_;
   putFaults(list, map);
@@ -420,7 +420,7 @@ void bindParameters(py::module& module)
             self.update(changes);
           },
           py::arg("key"), py::arg("value"), "Sets the value of one key. Raises ParameterError.")
-      .def("__contains__", &Configuration::contains, py::arg("key"), "Whether there is such a key.")
+      .def("__contains__", &Configuration::contains, py::arg("key"), "Whether a parameter has this key.")
       .def(
           "__len__", [](const Configuration& self) { return self.keys().size(); }, "Number of keys.")
       .def(
@@ -435,13 +435,13 @@ void bindParameters(py::module& module)
            "Sets the keys of a dict together, for values that would contradict each other if set alone. Raises "
            "ParameterError.")
       .def_static("field", &fieldOf, py::arg("key"),
-                  "Returns unit, range and meaning of a key as a Field. Raises KeyError.")
+                  "Returns type, unit, range and meaning of a key as a Field. Raises KeyError.")
       .def_property("faults", &Configuration::faults, &Configuration::setFaults,
                     "Faults that are active at the start or set in later: list of Fault. It is set as a whole, to one "
                     "or several; texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
       .def(
           "describe", [](const Configuration& self) { return describeParameters(self.values()); },
-          "Returns a text of all keys, values, units and meanings, one a line.")
+          "Returns a text with one line for each parameter: key, value, unit and meaning.")
       .def("copy", &Configuration::copy, "Returns another object with equal values.")
       .def("__copy__", &Configuration::copy)
       .def(
@@ -452,7 +452,7 @@ void bindParameters(py::module& module)
                     " keys>";
            })
       .def(py::pickle([](const Configuration& self) { return self.state(); }, &Configuration::fromState))
-      // Pickle's protocols 0 and 1 would make an instance of pybind11's base, which ends the process.
+      // Pickle's protocols 0 and 1 would make an instance of pybind11's base class. That would end the process.
       .def("__reduce_ex__", [](const py::object& self, int)
            { return py::module::import("builtins").attr("object").attr("__reduce_ex__")(self, 2); });
   bindFaults(module);

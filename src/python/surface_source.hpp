@@ -14,12 +14,12 @@
 
 namespace hjt
 {
-/// Source of response surfaces for a builder without the interpreter's lock.
+/// Source of response surfaces that twins use while they are built without the interpreter's lock.
 class SurfaceSourceOf
 {
 public:
-  /// `cache`: a directory; none: that of the tool. `progress`: called with the share 0 ... 1, or Python's None.
-  /// `builders`: number of builders that use this source one after the other and share equal surfaces.
+  /// `cache`: a directory; none: that of the tool. `progress`: Python function, called with the finished share 0 ... 1,
+  /// or None. `builders`: number of twins that are built one after the other and share equal surfaces.
   SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress, std::size_t builders = 1)
   {
     source_.cache_directory = cache ? *cache : surfaceCacheDirectory();
@@ -43,14 +43,14 @@ public:
 
   const SurfaceSource& source() const { return source_; }
 
-  /// Reports that a builder has finished. May throw what `progress` does.
+  /// Reports that one more twin has been built. Throws what `progress` throws.
   void next()
   {
     source_.progress(1.0);
     ++finished_;
   }
 
-  /// Issues Python warnings with the reasons why there is no surface, or why it was not stored.
+  /// Issues Python warnings: why a surface is missing, or why it was not stored.
   void warn() const
   {
     for (const std::string& notice : notices_)

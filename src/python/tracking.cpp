@@ -18,7 +18,7 @@ namespace
 {
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// A column of a recording; empty if it was not recorded.
+/// A column of a recording; empty if the quantity was not recorded.
 class Recorded
 {
 public:
@@ -28,8 +28,8 @@ public:
     if (values_ && (values_->ndim() != 1 || values_->size() != rows))
     {
       throw InputError(std::string(name) + " has " + std::to_string(values_->size()) + " values in " +
-                       std::to_string(values_->ndim()) + " dimensions, expected: " + std::to_string(rows) +
-                       " in one, as time");
+                       std::to_string(values_->ndim()) + " dimensions, expected: one dimension with " +
+                       std::to_string(rows) + " values, as many as time");
     }
     data_ = values_ ? values_->data() : nullptr;
   }
@@ -42,7 +42,7 @@ private:
   const double* data_;
 };
 
-/// The twin beside recorded rows.
+/// A twin that receives the rows of a recording.
 class TrackerObject
 {
 public:
@@ -155,7 +155,7 @@ void bindTracking(py::module& module)
 
   py::class_<TrackerObject>(
       module, "Tracker",
-      "A healthy joint beside a recorded one, as in `joint_twin follow` and the node beside a robot.\n\n"
+      "A sound joint beside a recorded one, as in `joint_twin follow` and the node beside a robot.\n\n"
       "Tracker(parameters, mode='motion', cache=None, progress=None). mode: 'motion' predicts the current of the "
       "recorded motion, 'torque' the motion of the recorded current, 'observer' corrects the twin towards the recorded "
       "angles. parameters: of the joint, for example Parameters('joints/elbow.yaml', 'beside_robot.yaml'); "

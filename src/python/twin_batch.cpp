@@ -26,7 +26,7 @@ namespace hjt
 {
 namespace
 {
-/// Spins for about the time that waking a thread takes.
+/// Spins until `condition` is true, but at most for about the time that waking a thread takes.
 template <class Condition>
 void spin(const Condition& condition)
 {
@@ -36,13 +36,13 @@ void spin(const Condition& condition)
   }
 }
 
-/// Threads that sleep between the tasks that they share.
+/// Threads that share the work of a task, and sleep while there is no task.
 class ThreadTeam
 {
 public:
   using Task = std::function<void(std::size_t)>;
 
-  /// `threads`: their number with the caller's; fewer if the system allows fewer.
+  /// `threads`: wanted number of threads with the caller's. The system may allow fewer.
   explicit ThreadTeam(std::size_t threads) : work_(std::make_shared<Work>()), process_(::getpid())
   {
     try
@@ -54,7 +54,7 @@ public:
     }
     catch (const std::system_error&)
     {
-      // The system allows no more threads; the existing ones do the work.
+      // The system allows no more threads. The existing threads do the work.
     }
   }
 
@@ -65,7 +65,7 @@ public:
   {
     if (::getpid() != process_)
     {
-      // The threads belong to the parent process; their data stay unused.
+      // This is a forked process: the threads exist only in its parent.
       for (std::thread& other : others_)
       {
         other.detach();
@@ -85,9 +85,9 @@ public:
 
   std::size_t size() const noexcept { return others_.size() + 1; }
 
-  /// Calls `task`, which must not throw, with each of 0 ... count - 1 in no fixed order, and returns when all are done.
-  /// A thread takes `portion` of them at once. Only one thread at a time may call this function. It does not wait for
-  /// threads that have not woken up when all tasks are taken, so that it also works in a forked process without them.
+  /// Calls `task`, which must not throw, with each number of 0 ... count - 1 in no fixed order, and returns after the
+  /// last call. A thread takes `portion` numbers at once. Only one thread at a time may call this function. It does not
+  /// wait for threads that have taken no number, so that it also works in a forked process, which lacks the threads.
   void run(std::size_t count, std::size_t portion, const Task& task)
   {
     {
@@ -116,11 +116,11 @@ private:
     std::mutex mutex;
     std::condition_variable begun;
     std::condition_variable left;
-    const Task* task{};  // null: no task that a thread can still join
+    const Task* task{};  // null if a thread cannot join the task any more
     std::size_t count{};
     std::size_t portion{};
     std::atomic<std::uint64_t> number{ 0 };
-    std::atomic<std::size_t> busy{ 0 };  // number of busy threads without the caller's
+    std::atomic<std::size_t> busy{ 0 };  // number of threads that work on the task, without the caller's
     std::atomic<bool> ends{ false };
     std::atomic<std::size_t> next{ 0 };
 
@@ -151,7 +151,7 @@ private:
         const Task* const todo = task;
         if (todo == nullptr)
         {
-          continue;  // the work was done without this thread
+          continue;  // the task ended before this thread woke up
         }
         ++busy;
         lock.unlock();
@@ -167,13 +167,13 @@ private:
 
   std::shared_ptr<Work> work_;
   std::vector<std::thread> others_;
-  long process_;  // process of the threads
+  long process_;  // number of the process that has the threads
 };
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // duration up to which blocks are lengthened
-constexpr py::ssize_t FIRST_BLOCK = 16384;             // number of steps of all twins together
+constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // blocks grow until one lasts this long
+constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of the first block, summed over all twins
 constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once: about 10 us on the surface
 
 using Twins = std::vector<std::pair<py::object, TwinObject*>>;
@@ -181,7 +181,7 @@ using Twins = std::vector<std::pair<py::object, TwinObject*>>;
 class BatchBuilder
 {
 public:
-  /// `given`: Parameters or a Twin for `count` equal twins, or several of them. @throws InputError.
+  /// `given`: Parameters or a Twin, of which `count` equal twins are made, or a list of them. @throws InputError.
   BatchBuilder(const py::object& given, const std::optional<py::ssize_t>& count)
     : alike_(py::isinstance<Configuration>(given) || py::isinstance<TwinObject>(given))
   {
@@ -279,7 +279,7 @@ private:
     {
       throw InputError("twins" + placeText(i) + " steps by " + std::to_string(twin.twin().stepLength()) +
                        " ns, twins[0] by " + std::to_string(before.front().second->twin().stepLength()) +
-                       " ns (solver.rate), so that they cannot step together");
+                       " ns (solver.rate); twins of a batch need equal steps");
     }
   }
 
@@ -304,13 +304,13 @@ public:
   py::ssize_t size() const { return static_cast<py::ssize_t>(twins_.size()); }
   std::size_t threads() const { return team_.size(); }
 
-  /// `place`: negative ones count from the end. @throws py::index_error.
+  /// The twin at `place`; a negative place counts from the end. @throws py::index_error.
   py::object at(py::ssize_t place) const
   {
     const py::ssize_t i = place < 0 ? place + size() : place;
     if (i < 0 || i >= size())
     {
-      throw py::index_error("twin " + std::to_string(place) + " of " + std::to_string(size()));
+      throw py::index_error("twin " + std::to_string(place) + " of a batch of " + std::to_string(size()));
     }
     return twins_[static_cast<std::size_t>(i)].first;
   }
@@ -366,7 +366,7 @@ public:
   }
 
 private:
-  /// Largest limit of the twins [N.m].
+  /// Largest output.load_torque_limit of all twins [N.m].
   double loadTorqueLimit() const
   {
     double limit = 0.0;
@@ -377,7 +377,7 @@ private:
     return limit;
   }
 
-  /// Steps in blocks, after which all twins are at the same step.
+  /// Advances all twins by `steps`. It works in blocks; after each block all twins are at the same step.
   void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
   {
     std::vector<Twin*> twins;
@@ -447,7 +447,8 @@ void bindSteps(py::class_<TwinBatch>& batch)
           "motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a number for all, or an array of shape "
           "(n,); None: the value that was commanded before. A given torque does not time out during the steps. out: as "
           "for run.\n\n"
-          "Returns a structured array of shape (n,) with dtype STEP_DTYPE: the twins after the last step. InputError.")
+          "Returns a structured array of shape (n,) with dtype STEP_DTYPE: the outputs of all twins after the last "
+          "step. Raises InputError.")
       .def(
           "run",
           [](TwinBatch& self, const std::optional<py::ssize_t>& steps, const py::object& motor_torque,
@@ -457,7 +458,7 @@ void bindSteps(py::class_<TwinBatch>& batch)
           },
           none("steps"), none("motor_torque"), none("load_torque"), none("brake"), none("temperature"),
           py::arg("every") = 1, none("out"), none("progress"),
-          "Advances all twins by a block of steps. Ctrl-C works and leaves all twins at the same step.\n\n"
+          "Advances all twins by a block of steps. Ctrl-C ends the call and leaves all twins at the same step.\n\n"
           "steps, every: as for Twin.run. motor_torque, load_torque [N.m], brake (0 or 1), temperature [degC]: a "
           "number; an array of shape (steps,) for all twins, (n, 1) or (n, steps); None: the value that was commanded "
           "before. A given torque does not time out during the run. out: array of an earlier call that is overwritten; "
@@ -492,16 +493,16 @@ void bindTwinBatch(py::module& module)
                }),
            py::arg("twins"), none("n"), none("cache"), none("progress"), none("threads"))
       .def("__len__", &TwinBatch::size, "Number of twins.")
-      .def("__getitem__", &TwinBatch::at, py::arg("twin"), "The Twin of this number. IndexError.")
+      .def("__getitem__", &TwinBatch::at, py::arg("twin"), "Returns the Twin of this number. Raises IndexError.")
       .def(
           "__reduce__",
           [](const TwinBatch&) -> py::object
           {
             throw py::type_error(
-                "a TwinBatch can be neither copied nor pickled; TwinBatch([copy.copy(twin) for twin in batch]) is "
-                "another at the same instant");
+                "a TwinBatch can be neither copied nor pickled; TwinBatch([copy.copy(twin) for twin in batch]) makes a "
+                "second batch at the same instant");
           },
-          "Raises TypeError; copy the twins instead.")
+          "Raises TypeError, because a batch cannot be copied. Copy its twins instead.")
       .def("__repr__",
            [](const TwinBatch& self)
            {
@@ -511,8 +512,9 @@ void bindTwinBatch(py::module& module)
       .def_property_readonly("outputs", &TwinBatch::outputs,
                              "all outputs and readings of the present instant: array of shape (n,), dtype STEP_DTYPE")
       .def_property_readonly("counters", &TwinBatch::counters,
-                             "counts since reset by name: dict of str to int array of shape (n,)")
-      .def_property_readonly("threads", &TwinBatch::threads, "number of threads with the caller's [-]");
+                             "counts of events since the last reset, by name: dict of str to int array of shape (n,)")
+      .def_property_readonly("threads", &TwinBatch::threads,
+                             "number of threads that step the twins, with the caller's [-]");
   bindSteps(batch);
 }
 }  // namespace hjt

@@ -21,9 +21,9 @@
 
 namespace hjt
 {
-/// Checks a value. `load_torque_limit`: of the twin; `name`: makes the text of the value's place. @throws InputError
-/// for a load or temperature that a twin would clamp. The motor's torque may be clamped, because its drive does so and
-/// counts it.
+/// Checks an input. `load_torque_limit`: that of the twin [N.m]; `name`: returns the name of the value. @throws
+/// InputError for a load or temperature that a twin would clamp. A motor torque may exceed its limit: a real drive
+/// clamps it too, and the twin counts it.
 template <class Name>
 void requireInput(InputKind kind, double value, double load_torque_limit, const Name& name)
 {
@@ -54,7 +54,7 @@ void requireInput(InputKind kind, double value, double load_torque_limit, const 
 
 struct RunShape
 {
-  /// Possible axes of an array: a value for each step, for each twin, or for each step of each twin.
+  /// Axes that an array may have: a value for each step, for each twin, or for each step of each twin.
   enum class Axes
   {
     STEPS,
@@ -63,9 +63,9 @@ struct RunShape
   };
 
   Axes axes{};
-  double load_torque_limit{};  ///< for different twins the largest one [N.m]
+  double load_torque_limit{};  ///< output.load_torque_limit; the largest one of several twins [N.m]
   py::ssize_t twins{ 1 };
-  std::optional<py::ssize_t> steps;  ///< empty: set by the length of the first array with steps
+  std::optional<py::ssize_t> steps;  ///< number of steps; empty if the first array with steps sets it
 };
 
 /// An input of a run: None, a number, or an array.
@@ -99,7 +99,7 @@ public:
 
   bool given() const { return given_; }
 
-  /// Only the motor's torque can time out, so it is commanded at every step.
+  /// Gives the twin the value of this step if it is new. Only a motor torque can time out, so it is given at each step.
   void push(Twin& twin, Stamp stamp, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
     const double* value = data_ + twin_stride_ * twin_number + step_stride_ * step;
@@ -144,7 +144,7 @@ private:
     }
   }
 
-  /// Text of a value's place, as Python writes it.
+  /// Index of a value as Python writes it, for error texts.
   std::string placeText(py::ssize_t i) const
   {
     switch (values_.ndim())
@@ -210,19 +210,19 @@ private:
   std::vector<InputColumn> columns_;
 };
 
-/// @returns the number of steps. @throws InputError.
+/// @returns the number of steps. @throws InputError if it is missing or negative, or if `every` is below 1.
 inline py::ssize_t requireSteps(const std::optional<py::ssize_t>& steps, py::ssize_t every)
 {
   if (!steps)
   {
-    throw InputError("steps is missing; give it, or give an input as an array with a value for each step");
+    throw InputError("steps is missing; give the number of steps, or an input as an array with a value for each step");
   }
   requireAtLeast("steps", *steps, 0);
   requireAtLeast("every", every, 1);
   return *steps;
 }
 
-/// A row of a run: all outputs and readings of an instant. Names are those of the columns of `joint_twin simulate`.
+/// A row of a run: all outputs and readings of an instant. The columns of `joint_twin simulate` have the same names.
 struct StepRow
 {
   std::int64_t stamp;
@@ -297,7 +297,7 @@ inline StepRow rowOf(const Twin& twin) noexcept
 
 using StepRows = py::array_t<StepRow>;
 
-/// The user's array, or a new one. @throws InputError.
+/// The array `out` of the user for the rows of a run, or a new array. @throws InputError if `out` does not fit.
 inline StepRows rowsFor(const std::vector<py::ssize_t>& shape, const py::object& out)
 {
   if (out.is_none())

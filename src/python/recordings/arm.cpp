@@ -22,7 +22,7 @@ namespace hjt
 {
 namespace
 {
-/// Set points from columns: `position` and optionally `velocity` and `acceleration`, of shape (rows, joints).
+/// Set points from columns: `time`, `position`, and optionally `velocity` and `acceleration`.
 /// @throws InputError if columns are missing or differ in shape.
 std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
 {
@@ -37,9 +37,8 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
       (accelerations && !fits(accelerations)))
   {
     throw InputError(
-        "motion: columns 'time', of shape (rows,), and 'position', of shape (rows, joints), are required; 'velocity' "
-        "and "
-        "'acceleration' have the shape of 'position'");
+        "motion: a column 'time' of shape (rows,) and a column 'position' of shape (rows, joints) are required; "
+        "columns 'velocity' and 'acceleration' must have the shape of 'position'");
   }
   std::vector<ArmSetPoint> points(static_cast<std::size_t>(times.rows()));
   for (std::size_t row = 0; row < points.size(); ++row)
@@ -60,7 +59,7 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
   return points;
 }
 
-/// Rows as arrays by quantity, of shape (rows,), (rows, joints) or (rows, 3).
+/// Rows of an arm as one array for each quantity, of shape (rows,), (rows, joints) or (rows, 3).
 class RowArrays
 {
 public:
@@ -90,7 +89,7 @@ private:
   ArmRow values_;
 };
 
-/// Set points from a file or from columns.
+/// Set points of a motion, which is the name of a file, or columns.
 std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescription& arm)
 {
   std::vector<ArmSetPoint> points =
@@ -161,7 +160,7 @@ public:
     }
     catch (const Stopped&)
     {
-      // Ends with what Python raised, which `finish` throws.
+      // The call ends, because Python has raised an exception. `finish` throws it.
     }
     warnPython(watch.finish());
     recorder_.emplace(arm_, *moving_);
@@ -185,7 +184,7 @@ public:
 
   double move(const py::object& motion)
   {
-    const InUse::Hold hold = in_use_.hold();  // reading and warning may let other threads run
+    const InUse::Hold hold = in_use_.hold();  // other threads may run while this function reads or warns
     std::vector<ArmSetPoint> points = setPointsIn(motion, arm_);
     requireRates(points, arm_, "motion");
     const double change = straightenTimes(points);
@@ -225,8 +224,8 @@ public:
         });
     if (const std::uint64_t more = countersOf(twin).solver_failures - failures; more > 0)
     {
-      warnPython({ "there was no equilibrium in " + std::to_string(more) +
-                   " steps, in which the last converged state was kept" });
+      warnPython({ "the solver found no equilibrium in " + std::to_string(more) +
+                   " steps, in which the twin kept its last converged state" });
     }
     return rows.arrays(arm_.joints.size());
   }
@@ -257,7 +256,7 @@ public:
     {
       if (!(std::abs(force[k]) <= MAX_WRENCH && std::abs(moment[k]) <= MAX_WRENCH))
       {
-        throw InputError("wrench: each of force [N] and moment [N.m] must be within -1000 ... 1000");
+        throw InputError("wrench: each component of force [N] and moment [N.m] must be within -1000 ... 1000");
       }
     }
     moving_->twin().setWrench({ force, moment });
@@ -277,7 +276,7 @@ public:
     const std::optional<std::size_t> only = joint ? findJoint(arm_, *joint) : std::nullopt;
     if (joint && !only)
     {
-      throw InputError("joint: no joint '" + *joint + "'; there are " + shortNames(arm_));
+      throw InputError("joint: the arm has no joint '" + *joint + "'; its joints are " + shortNames(arm_));
     }
     ArmTwin& twin = moving_->twin();
     for (std::size_t i = only.value_or(0); i < (only ? *only + 1 : twin.joints()); ++i)
@@ -327,7 +326,7 @@ public:
 
 private:
   static constexpr double MAX_WRENCH = 1000.0;  // limit of the node's ~wrench [N], [N.m]
-  static constexpr double LONGEST = 1e6;        // [s]
+  static constexpr double LONGEST = 1e6;        // longest duration of a run [s]
 
   static void requirePayload(const Payload& payload)
   {
@@ -370,7 +369,7 @@ Answer armIn(const py::dict& arguments)
 void bindArm(py::module& module)
 {
   py::class_<ArmObject>(module, "Arm",
-                        "An arm in closed loop that is simulated in pieces, used by harmonic_joint_twin.Arm.")
+                        "An arm in closed loop that is simulated in pieces; harmonic_joint_twin.Arm uses it.")
       .def(py::init<const py::dict&>(), py::arg("arguments"))
       .def("move", &ArmObject::move, py::arg("motion"))
       .def("run", &ArmObject::run, py::arg("duration"), py::arg("rate") = py::none())

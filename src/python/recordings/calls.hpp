@@ -65,13 +65,13 @@ inline py::object toPython(const Json& json)
 /// Text of an object as Python writes it, with limited length.
 inline std::string shortText(const py::handle& value)
 {
-  constexpr py::ssize_t LONGEST = 60;  // characters, each of one or more bytes
+  constexpr py::ssize_t LONGEST = 60;  // greatest number of characters, each of one or more bytes
   const py::object text = py::repr(value);
   const py::object begin = text[py::slice(0, LONGEST, 1)];
   return py::cast<std::string>(begin) + (begin.equal(text) ? "" : "...");
 }
 
-/// Required type of an option's value.
+/// Text that names the required type of an option's value.
 inline const char* kindText(const Option& option)
 {
   const bool is_number = option.kind == Option::Kind::NUMBER;
@@ -82,13 +82,13 @@ inline const char* kindText(const Option& option)
                                               (is_number ? "a list of numbers" : "a list of texts");
 }
 
-/// Options of a function by their names.
+/// Options that Python gives to a function, by their names.
 class Given
 {
 public:
   explicit Given(const py::dict& values) : values_(values) {}
 
-  /// Stores the options in their fields. Names are those of the command line in Python's spelling.
+  /// Stores the given options in the fields of `table`. Their names are those of the command line in Python's spelling.
   /// @throws InputError.
   void take(OptionTable table) const
   {
@@ -108,7 +108,7 @@ public:
     table.take();
   }
 
-  /// Columns that replace a file, whose name is then that of the argument; null if a file is given.
+  /// Columns of the argument `name`; null if the argument names a file. The columns then have the argument's name.
   py::object columns(const char* name) const
   {
     const py::object given = (*this)[name];
@@ -179,7 +179,7 @@ private:
   py::dict values_;
 };
 
-/// Connects a function to Python: Ctrl-C, exceptions of `progress`, and notices that become warnings.
+/// Connects a library function to Python: Ctrl-C and exceptions of `progress` end it, its notices become warnings.
 class PythonWatch
 {
 public:
@@ -198,7 +198,7 @@ public:
              [this](const std::string& text) { notices_.push_back(text); } };
   }
 
-  /// @throws what Python raised during the call.
+  /// @returns the notices of the call. @throws what Python has raised during the call.
   std::vector<std::string> finish()
   {
     if (error_)
@@ -213,7 +213,7 @@ public:
   }
 
 private:
-  /// After Python has raised, nothing of it is called until files are closed.
+  /// Calls `progress` and Python's signal handlers. After an exception neither is called until files are closed.
   void look(const std::string& what, double done)
   {
     if (ended_)
@@ -272,7 +272,7 @@ void takeOptions(const Given& given, Options& options)
   given.take(table);
 }
 
-/// Names of the options, for tests of signatures.
+/// Adds to the module a list of the function's options, with which a test compares the function's signature.
 template <class Options>
 void listOptions(const py::module& module, const char* function)
 {
@@ -289,7 +289,7 @@ void listOptions(const py::module& module, const char* function)
 
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// @throws InputError unless `columns` has columns by name. `what`: name of the argument in the error text.
+/// @throws InputError if `columns` has no columns by name. `what`: name of the argument in the error text.
 inline void requireColumns(const py::object& columns, const std::string& what)
 {
   const bool is_structured = py::hasattr(columns, "dtype") && !columns.attr("dtype").attr("names").is_none();
@@ -301,8 +301,8 @@ inline void requireColumns(const py::object& columns, const std::string& what)
   }
 }
 
-/// A column of a mapping of arrays or a structured array, of shape (rows,) or, for an arm, (rows, joints); empty if
-/// missing.
+/// A column of a mapping of arrays or of a structured array, empty if it is missing. Its shape is (rows,) or, for an
+/// arm, (rows, joints).
 class MotionColumn
 {
 public:
@@ -321,7 +321,7 @@ public:
   double at(std::size_t row, std::size_t joint) const { return data_[row * static_cast<std::size_t>(width()) + joint]; }
 
 private:
-  /// Dates and times of numpy or pandas in seconds.
+  /// Dates and times of numpy or pandas, converted to seconds [s].
   static py::object inSeconds(const py::object& column, const std::string& name)
   {
     const py::object kind = py::getattr(py::getattr(column, "dtype", py::none()), "kind", py::none());
@@ -353,7 +353,7 @@ private:
     if (values_.ndim() != 1 && values_.ndim() != 2)
     {
       throw InputError("column '" + name + "' has " + std::to_string(values_.ndim()) +
-                       " dimensions, expected: the shape (rows,) or (rows, joints)");
+                       " dimensions; its shape must be (rows,) or (rows, joints)");
     }
     data_ = values_.data();
   }
@@ -379,12 +379,12 @@ Answer call(const Given& given, Options& options, const Function& function, cons
   }
   catch (const InputError& error)
   {
-    const std::vector<std::string> notices = watch.finish();  // an incomplete result is not the user's error
+    const std::vector<std::string> notices = watch.finish();  // throws if Python has ended the call
     if (dynamic_cast<const ParameterError*>(&error) != nullptr || notices.empty())
     {
       throw;
     }
-    // Earlier notices may explain the error.
+    // Notices before the error may explain it.
     throw InputError(error.what() + ("\n" + joined(notices, "\n")));
   }
 }

@@ -27,7 +27,7 @@ namespace hjt
 {
 namespace
 {
-/// @throws InputError if columns are missing or differ in shape.
+/// Reads the rows of a recording from columns. @throws InputError if columns are missing or differ in shape.
 void takeRows(const py::object& columns, RecordingOptions& options)
 {
   struct Choice
@@ -90,7 +90,7 @@ void takeRecording(const Given& given, Options& options)
   }
 }
 
-/// `at_hand`: arrays of shape (rows,) by the names of the columns.
+/// Reads options and recordings. Option `at_hand`: for each recording its columns by name, arrays of shape (rows,).
 template <class Options>
 void takeSignals(const Given& given, Options& options)
 {
@@ -162,7 +162,7 @@ SweepResult sweepAndTell(const SweepOptions& asked)
   return found;
 }
 
-/// Defines a function of the module. `take` reads the options of `function`, `document` makes JSON of its result.
+/// Defines a function of the module. `take` reads the options of `function`; `document` makes JSON of its result.
 template <class Options, class Result, class Document>
 void define(py::module& module, const char* name, const char* text, void (*take)(const Given&, Options&),
             Result (*function)(const Options&), const Document& document)
@@ -216,7 +216,7 @@ void define(py::module& module)
 PYBIND11_MODULE(_recordings, module)
 {
   module.doc() = "Functions on recordings and data sets: options by name as input, a document and notices as output.";
-  pybind11::module::import("harmonic_joint_twin._hjt");  // its errors and COMPARISON_DTYPE
+  pybind11::module::import("harmonic_joint_twin._hjt");  // defines the errors and COMPARISON_DTYPE
   module.attr("OPTIONS") = pybind11::dict();
   hjt::define(module);
   hjt::bindArm(module);
