@@ -17,13 +17,13 @@ namespace
 using trajectory_msgs::JointTrajectory;
 using trajectory_msgs::JointTrajectoryPoint;
 
-constexpr double SAME_PLACE = 0.01;       // largest distance of a point at time 0 from the present set point [rad]
+constexpr double SAME_PLACE = 0.01;       // largest difference of a point at time 0 from the present set point [rad]
 constexpr std::size_t MAX_SHOWN = 300;    // largest shown length of the names in a message [bytes]
 constexpr double SPEED_TOLERANCE = 1e-6;  // share by which a speed may exceed its limit [-]
 
 constexpr std::size_t NOT_NAMED = static_cast<std::size_t>(-1);
 
-/// Index of each joint of the arm in the message, or NOT_NAMED. @returns the error of the names; empty if they are
+/// Index of each joint of the arm in the message, or NOT_NAMED. @returns the error in the names; empty if the names are
 /// valid.
 std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, std::vector<std::size_t>& places)
 {
@@ -37,16 +37,16 @@ std::string placesOf(const JointTrajectory& message, const ArmDescription& arm, 
     std::size_t* const its = is_known ? &places[static_cast<std::size_t>(joint - arm.joints.begin())] : nullptr;
     if (its == nullptr || *its != NOT_NAMED)
     {
-      return (is_known ? "it names more than once " : "the arm has no joint ") + printable(names[place], MAX_SHOWN) +
-             "; it names " + printable(joined(names, ", "), MAX_SHOWN);
+      return (is_known ? "the message names more than once " : "the arm has no joint ") +
+             printable(names[place], MAX_SHOWN) + "; the message names " + printable(joined(names, ", "), MAX_SHOWN);
     }
     *its = place;
   }
-  return names.empty() ? "it names no joint" : "";
+  return names.empty() ? "the message names no joint" : "";
 }
 
-/// Position at which a joint comes to rest after `length` [s] of deceleration. The speed decreases with the square of
-/// the remaining time, as in the cubic between the set points.
+/// Position at which a joint comes to rest after a deceleration of `length` [s]. The speed decreases with the square of
+/// the remaining time, as in the cubic between two set points.
 JointMotion restOf(const JointMotion& joint, double length)
 {
   return { joint.position + joint.velocity * length / 3.0, 0.0, 0.0 };
@@ -84,8 +84,8 @@ double greatestSpeed(const JointMotion& from, const JointMotion& to, double leng
   return greatest;
 }
 
-/// Sets missing velocities: the slopes over both neighbours; 0 at the end, and for joints that the message does not
-/// name.
+/// Sets missing velocities: at a point the slope between the points before and after it; 0 at the last point, and for
+/// joints that the message does not name.
 void fillVelocities(const JointTrajectory& message, const std::vector<std::size_t>& places,
                     std::vector<ArmSetPoint>& points)
 {
@@ -120,7 +120,8 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
       if (limit > 0.0 && !(speed <= limit * (1.0 + SPEED_TOLERANCE)))
       {
         return arm.joints[i].name + " would reach " + roundedText(speed, 3) + " rad/s between the set point at " +
-               roundedText(points[k].time, 4) + " s and the one before; its limit is " + roundedText(limit, 4);
+               roundedText(points[k].time, 4) + " s and the point before; its limit is " + roundedText(limit, 4) +
+               " rad/s";
       }
     }
   }
@@ -130,9 +131,9 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
 
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
 {
-  // first trial for the fastest joint; the gentle motion uses half of it [rad/s^2]
+  // largest deceleration of the fastest joint; the gentle motion has half of it [rad/s^2]
   constexpr double ACCELERATION = 4.0;
-  constexpr double SHORTEST = 0.2;  // [s]
+  constexpr double SHORTEST = 0.2;  // least time until rest [s]
   double fastest = 0.0;
   for (const JointMotion& joint : present)
   {

@@ -10,10 +10,10 @@
 
 namespace hjt
 {
-/// Set points of a trajectory, which may name joints of the arm in any order, after the present one at time 0. Other
-/// joints come to rest before its first point and stay there. `delay`: time from now to the trajectory's beginning, >=
-/// 0 [s]. Missing velocities follow from the angles; accelerations are ignored. @returns the error; empty if the
-/// trajectory is valid.
+/// Converts a trajectory to set points, of which the first is the present one at time 0. The trajectory may name joints
+/// of the arm in any order. Joints that it does not name come to rest before its first point. `delay`: time from now to
+/// the beginning of the trajectory, >= 0 [s]. Missing velocities are computed from the angles; accelerations are
+/// ignored. @returns the error; empty if the trajectory is valid.
 std::string readTrajectory(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm,
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points);
 

@@ -29,7 +29,7 @@ struct DiagnosticVerdict
   std::string text;
 };
 
-/// Verdict of the first true condition; `otherwise` if none is true.
+/// Verdict of the first true condition; `otherwise` if no condition is true.
 inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVerdict>>& conditions,
                                  DiagnosticVerdict otherwise)
 {
@@ -43,15 +43,15 @@ inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVer
   return otherwise;
 }
 
-/// Tasks of /diagnostics, each with a verdict and values. They are reported every `~diagnostic_period` (default 1 s)
-/// and when a level changes. The period is wall clock time, because a simulated clock may stop.
+/// Tasks of /diagnostics, each with a verdict and values. All tasks are reported every `~diagnostic_period` (default
+/// 1 s) and when a level changes. The period is in wall clock time, because a simulated clock may stop.
 /// diagnostic_updater::Updater is unsuitable: it uses the ROS clock and throws near the end of its range.
 class DiagnosticTasks
 {
 public:
   static constexpr double LOOK_PERIOD = 0.2;  ///< period for calls of `look` [s]
 
-  /// `name`: name of the twin, which precedes that of each task.
+  /// `name`: name of the twin, which precedes the name of each task.
   DiagnosticTasks(const std::string& name, const std::string& hardware_id)
     : name_(name)
     , hardware_id_(hardware_id)
@@ -60,7 +60,7 @@ public:
   {
   }
 
-  /// Adds a task that two members of its owner judge and report; the owner must outlive this object.
+  /// Adds a task. Members of its owner judge and report it. The owner must outlive this object.
   template <class Owner>
   void add(const std::string& name, const Owner* owner, DiagnosticVerdict (Owner::*judge)() const,
            void (Owner::*report)(diagnostic_updater::DiagnosticStatusWrapper&) const)
@@ -124,7 +124,7 @@ private:
   ros::Publisher publisher_;
 };
 
-/// Whether a counter has increased recently in wall clock time. A single event thus stays visible to a reader at 1 Hz.
+/// Whether a counter has increased in the last MEMORY seconds of wall clock time. So a reader at 1 Hz sees each event.
 class RecentEvents
 {
 public:
@@ -136,7 +136,7 @@ public:
     {
       last_event_ = now;
     }
-    // A reset of the counter is no event.
+    // A reset of the counter is not an event.
     count_ = count;
     recent_ = !last_event_.isZero() && (now - last_event_).toSec() < MEMORY;
   }
@@ -149,8 +149,8 @@ private:
   bool recent_{};
 };
 
-/// Task of /diagnostics on whether a loop is in time with the clock. It also logs jumps of the clock, and when the loop
-/// falls behind or is in time again.
+/// Task of /diagnostics: whether the loop of a twin is in time with the clock. The task also logs that the clock jumps,
+/// that the loop falls behind, and that the loop is in time again.
 class TimingTask
 {
 public:
@@ -160,7 +160,7 @@ public:
   {
   }
 
-  /// Updates the task. `dropped`: messages that could not be published.
+  /// Updates the task. `dropped`: number of messages that could not be published.
   void update(const LoopStatus& loop, std::uint64_t dropped)
   {
     loop_ = loop;
@@ -186,11 +186,11 @@ public:
           { is_behind_,
             { D::WARN, "The twin is behind the clock and catches up; ~reset restarts it at the current instant" } },
           { missed_deadlines_.areRecent(),
-            { D::WARN, "Deadlines were missed: instants were later than realtime.deadline allows" } },
+            { D::WARN, "Deadlines were missed: steps ended later than realtime.deadline allows" } },
           { (ros::WallTime::now() - clock_moved_).toSec() > CLOCK_STANDS_AFTER, { D::WARN, "The clock has stopped" } },
           { !realtime_.refusals.empty(),
-            { D::WARN, "In time, but the system refused a request of section realtime; see the log" } } },
-        { D::OK, "In time" });
+            { D::WARN, "The twin is in time, but the system refused a request of section realtime; see the log" } } },
+        { D::OK, "The twin is in time" });
   }
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const
@@ -222,9 +222,9 @@ public:
 private:
   // Time without a change of the ROS clock after which it counts as stopped [s, wall clock].
   static constexpr double CLOCK_STANDS_AFTER = 1.0;
-  // Lag of the twin above which it is reported [s].
+  // Lag of the twin behind the clock above which the node warns [s].
   static constexpr double LAG_WARNING = 1.0;
-  // Lag of the twin below which it counts as in time again [s].
+  // Lag of the twin behind the clock below which the twin counts as in time again [s].
   static constexpr double CAUGHT_UP = 0.1;
 
   static std::string jumpText(const LoopStatus& loop)

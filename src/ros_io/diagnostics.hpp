@@ -18,10 +18,10 @@
 
 namespace hjt
 {
-/// Text of the indicators' state, up to date or not. A reported fault remains until windows contradict it.
+/// Text of the assessment. A reported fault remains until later windows contradict it.
 std::string verdictText(const Assessment& assessment);
 
-/// Adds cause, evidence and windows of an assessment.
+/// Adds cause, evidence and windows of an assessment to the diagnostics.
 void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// Publishes the state of drive, input, timing and health on /diagnostics, about once a second in wall clock time and
@@ -33,7 +33,7 @@ public:
               const Inbox& inbox, const InputSubscribers& subscribers, const OutputPublishers& publishers);
 
 private:
-  /// Data of the tasks, read once for each update.
+  /// Data that the tasks use, read once for each update.
   struct Snapshot
   {
     LoopStatus loop;

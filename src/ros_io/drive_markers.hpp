@@ -16,24 +16,24 @@ namespace hjt
 struct MarkerStyle
 {
   std::string frame;    ///< frame of the markers, whose z axis is the drive's axis
-  double exaggeration;  ///< factor on radial distances from the middle of the engaged teeth [-]
+  double exaggeration;  ///< factor by which radial distances from the middle of the engaged teeth are drawn larger [-]
   double arrow_length;  ///< length of an arrow per force [m/N]
   double full_force;    ///< force of a tooth with full colour [N]
 };
 
 /// Markers for rviz of the drive, seen along its axis, from one message of contact forces.
 ///
-/// Points are those of the message, in the plane z = 0, with stretched radii. Teeth are plain trapezoids, which do not
-/// show the shape of the flanks.
+/// The points of the message are drawn in the plane z = 0 with stretched radii. Teeth are trapezoids, which do not show
+/// the shape of the flanks.
 ///
 /// | namespace of the marker | shows |
 /// |---|---|
-/// | `wave_generator` | its ellipse and major axis |
+/// | `wave_generator` | ellipse and major axis of the wave generator |
 /// | `flexspline` | teeth, coloured by the force on the flank; rim, by the stress between its teeth |
 /// | `circular_spline` | ring and teeth |
-/// | `wave_generator_force` | arrow onto every tooth that it presses, along the rim's normal |
-/// | `leading_flank_force`, `trailing_flank_force` | arrow onto every loaded flank, along its normal |
-/// | `loads` | teeth loaded and largest forces, as text |
+/// | `wave_generator_force` | arrow onto each tooth that the wave generator presses, along the rim's normal |
+/// | `leading_flank_force`, `trailing_flank_force` | arrow onto each loaded flank, along the flank's normal |
+/// | `loads` | text with the number of loaded teeth and the largest forces |
 class DriveMarkers
 {
 public:

@@ -26,17 +26,17 @@
 
 namespace hjt
 {
-/// Time between two warnings of one kind [s].
+/// Least time between two warnings of the same kind [s].
 constexpr double WARNING_PERIOD = 5.0;
 
-/// Subscribes topics on which anybody may publish. A message of more than MAX_BYTES bytes is counted and not
-/// deserialised, because its content takes a multiple of its length in memory.
+/// Subscribes to topics on which any node may publish. A message of more than MAX_BYTES is counted, not deserialised,
+/// because its content would take a multiple of its length in memory.
 struct InputTopics
 {
   /// Twice the size of a JointState of 1000 joints [bytes].
   static constexpr std::size_t MAX_BYTES = 128 * 1024;
-  /// Seconds of messages at 1 kHz. A fast bag sends bursts, and a twin that catches up reads them later; none may be
-  /// lost.
+  /// Number of messages in 4 s at 1 kHz. A bag that is played fast sends bursts, which a twin that is behind reads
+  /// later. None of these messages may be lost.
   static constexpr std::uint32_t QUEUE_SIZE = 4096;
 
   ros::NodeHandle& node;
@@ -52,7 +52,7 @@ struct InputTopics
     options.md5sum = ros::message_traits::md5sum<Message>();
     options.datatype = ros::message_traits::datatype<Message>();
     options.helper = boost::make_shared<Reader<Message>>(receive, too_large);
-    // The connection has no delay for collecting small messages.
+    // TCP must send small messages at once instead of collecting them.
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     return node.subscribe(options);
   }
@@ -85,11 +85,11 @@ private:
   };
 };
 
-/// Puts faults of ~inject_fault into the inbox. An invalid one is refused with a warning.
+/// Puts faults of ~inject_fault into the inbox. An invalid fault is refused with a warning.
 class FaultSubscriber
 {
 public:
-  /// `twin`: the twin that gets the faults; `joint`: its number in the inbox.
+  /// `twin`: the twin that gets the faults; `joint`: number of the twin's joint in the inbox.
   FaultSubscriber(const InputTopics& inputs, const Twin& twin, Inbox& inbox, std::size_t joint = 0)
     : twin_(twin)
     , inbox_(inbox)
@@ -104,7 +104,7 @@ public:
 private:
   void receive(const harmonic_joint_twin::Fault& message)
   {
-    // Faults are single events, and each warning has its own reason [s].
+    // Least time between two warnings. It is short, because faults are single events with their own reasons [s].
     constexpr double WARNING_PERIOD = 1.0;
     std::vector<Fault> steps;
     const std::string errors = readFault(message, twin_.parameters(), steps);
@@ -129,7 +129,7 @@ private:
   ros::Subscriber subscriber_;
 };
 
-/// Number of messages since start without a torque or fault for this joint.
+/// Numbers of refused messages since the start of the node.
 struct MessageCounters
 {
   std::uint64_t unknown_joint{};   ///< messages that name neither the joint nor, for a command, its motor
@@ -138,8 +138,8 @@ struct MessageCounters
   std::uint64_t too_large{};       ///< messages with more bytes than InputTopics::MAX_BYTES
 };
 
-/// Subscribes the topics of torques and faults, and puts their content with stamps into the inbox. A message without a
-/// stamp gets the time of its reception.
+/// Subscribes to the topics of torques and faults, and puts their content with its stamp into the inbox. A message
+/// without a stamp gets the time of its reception.
 class InputSubscribers
 {
 public:

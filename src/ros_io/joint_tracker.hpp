@@ -36,7 +36,7 @@
 
 namespace hjt
 {
-/// Zero of a robot's telemetry time, the stamp of its first row, and check whether stamps are of one clock.
+/// Zero of a robot's telemetry time, which is the stamp of the first row; also checks whether stamps are of one clock.
 class TelemetryClock
 {
 public:
@@ -45,7 +45,7 @@ public:
     TAKEN,
     FIRST,    ///< the first row, which sets the zero
     MOVED,    ///< the clock of the robot or of this machine has been set; there is a new zero
-    REFUSED,  ///< far from the clock of the preceding rows; a second one like it counts as MOVED
+    REFUSED,  ///< far from the clock of the preceding rows; a second such row in succession counts as MOVED
   };
 
   Row take(Stamp stamp, Stamp received)
@@ -71,41 +71,41 @@ public:
   double seconds(Stamp stamp) const { return toSeconds(stamp - *zero_); }
   Stamp stamp(double seconds) const { return *zero_ + std::llround(1e9 * seconds); }
 
-  /// Time of this clock at a time of reception [ns].
+  /// Time that the robot's clock shows at a time of reception [ns].
   Stamp at(Stamp received) const { return received - offset_; }
-  /// Whether a stamp received at that time can be of this clock.
+  /// Whether a stamp that was received at the time `received` can be of the robot's clock.
   bool isOf(Stamp stamp, Stamp received) const { return agree(received - stamp, offset_); }
 
 private:
   static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
 
-  std::optional<Stamp> zero_;            // stamp of the first row [ns]
+  std::optional<Stamp> zero_;            // stamp of the row that sets the zero [ns]
   Stamp offset_{};                       // reception minus stamp of the last accepted row [ns]
   std::optional<Stamp> refused_offset_;  // reception minus stamp of the last row, if it was refused [ns]
 };
 
-/// Messages of one topic for all joints of a robot. The node's mutex protects all except `too_large`.
+/// State of the telemetry topic of all joints of a robot. The node's mutex protects all members except `too_large`.
 struct TelemetryStream
 {
   std::string topic;
   TelemetryClock clock;
   StreamTiming timing;
   Stamp last_received{};               ///< time of the last reception [ns]
-  std::uint64_t far_stamps{};          ///< messages refused because of their stamp
-  std::uint64_t clock_changes{};       ///< restarts because all stamps had moved
-  std::uint64_t other_temperatures{};  ///< temperatures whose frame_id is not a joint
+  std::uint64_t far_stamps{};          ///< number of messages refused because of their stamps
+  std::uint64_t clock_changes{};       ///< number of restarts because the clock of the stamps had changed
+  std::uint64_t other_temperatures{};  ///< number of temperatures whose frame_id is not a joint
   std::string found_names;             ///< names in the last message that lacks a joint
-  std::string lack;                    ///< clause on the missing parts of messages since the last row; empty: none
-  std::string mounting;  ///< clause on a mounting that the currents show and that is not configured; empty: none
-  std::string drag;     ///< clause on a drag of the tool that the currents show and that is not configured; empty: none
-  std::string payload;  ///< clause on a payload that the currents show and that is not configured; empty: none
-  LeftOutRows left_out;            ///< rows that the filter removed
-  std::uint64_t folds{};           ///< jumps by a turn that were removed from the angles
-  std::uint64_t without_effort{};  ///< messages refused because all efforts are zero
+  std::string lack;                    ///< clause: why messages after the last row gave no row; empty: none
+  std::string mounting;                ///< clause: the currents show a mounting that is not configured; empty: none
+  std::string drag;                ///< clause: the currents show a drag of the tool that is not configured; empty: none
+  std::string payload;             ///< clause: the currents show a payload that is not configured; empty: none
+  LeftOutRows left_out;            ///< numbers of rows that the filter removed
+  std::uint64_t folds{};           ///< number of jumps by a turn that were removed from the angles
+  std::uint64_t without_effort{};  ///< number of messages refused because all efforts are zero
   std::atomic<std::uint64_t> too_large{ 0 };
 };
 
-/// Sink of a live topic.
+/// A live topic of the node, with a count of its subscribers.
 template <class Message>
 class PublishedTopic
 {
@@ -117,7 +117,7 @@ public:
     publisher_ = node.advertise<Message>(name, QUEUE_SIZE, count(1), count(-1), ros::VoidConstPtr(), IS_LATCHED);
   }
 
-  /// Uses a count of subscribers, because roscpp's own takes a lock and searches all topics.
+  /// Uses its own count of subscribers, because roscpp's count takes a lock and searches all topics.
   bool isWanted() const noexcept { return IS_LATCHED || *subscribers_ > 0; }
 
   Message& message() { return message_; }
@@ -139,36 +139,36 @@ private:
 class JointTracker
 {
 public:
-  /// `node`: namespace of the topics. `sound`: reference figures of this joint. `is_identified`: the parameters contain
+  /// `node`: namespace of the topics. `sound`: reference of this joint. `is_identified`: whether the parameters contain
   /// the identified friction of this joint. @throws ParameterError.
   JointTracker(ros::NodeHandle& node, const Parameters& parameters, const SoundJoint& sound, bool is_identified,
                TelemetryStream& stream, std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
-  double currentPerEffort() const { return current_per_effort_; }  ///< [A], [A/(N.m)]
-  double greatestSpeed() const { return greatest_speed_; }         ///< [rad/s]
-  /// Whether the load comes from the motion of the whole arm by `pushLoad`.
+  double currentPerEffort() const { return current_per_effort_; }  ///< current over effort [-], [A/(N.m)]
+  double greatestSpeed() const { return greatest_speed_; }         ///< largest possible speed of the joint [rad/s]
+  /// Whether the load is computed from the motion of the whole arm.
   bool takesArmLoad() const { return takes_arm_load_; }
 
-  /// Reads the row of this joint from a message; counts and logs anything else. A joint of an arm without efforts in
-  /// its first messages is read with current 0: it is not judged, and the other joints continue.
+  /// Reads the row of this joint from a message. Counts and logs a message without such a row. If the first messages of
+  /// an arm have no efforts for this joint, its current is 0: it is not judged, and the other joints continue.
   TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
 
-  /// Sets a new zero of the stream's time. `reset`: the earlier rows are of another clock.
+  /// Begins at a new zero of the stream's time. `reset`: whether the earlier rows are discarded.
   void start(bool reset);
 
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
-  void push(const MotionRow& row);        ///< row of a single joint
-  void compare(const MotionSample& row);  ///< row of a joint of an arm
+  void push(const MotionRow& row);        ///< compares the row of a single joint
+  void compare(const MotionSample& row);  ///< compares the row of a joint of an arm
 
-  /// Sets a misfit of the telemetry. None: it fits, or the check is not yet `settled`.
+  /// Sets the misfit of the telemetry. Without a misfit the telemetry fits, or the check is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);
   void setFitted(const FittedFriction& friction) { verdict_.setFitted(friction); }
 
   Tracker& tracker() { return tracker_; }
 
-  /// Sets the present common factor of friction of the arm's joints relative to this joint's expectation [-]. 1: none,
-  /// or the twin already predicts with it.
+  /// Sets the common factor of the friction of the arm's joints, relative to the expected friction [-]. The factor is 1
+  /// if there is none, or if the twin's prediction contains it.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }
@@ -183,7 +183,7 @@ public:
   void look(const ros::WallTime& now);
 
 private:
-  /// Numbers of messages that the node refused.
+  /// Numbers of messages that the node refused, by reason.
   struct Refusals
   {
     std::uint64_t unknown_joint{};
@@ -195,15 +195,15 @@ private:
 
   struct TemperatureAt
   {
-    std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
-    Stamp received;              // [ns]
+    std::optional<Stamp> stamp;  // stamp of the message; none: the temperature is valid from its reception on [ns]
+    Stamp received;              // time of reception [ns]
     double temperature;          // received temperature [degC]
   };
 
   struct LoadAt
   {
-    std::optional<Stamp> stamp;  // none: valid from its reception on [ns]
-    Stamp received;              // [ns]
+    std::optional<Stamp> stamp;  // stamp of the message; none: the load is valid from its reception on [ns]
+    Stamp received;              // time of reception [ns]
     double torque;               // received load [N.m]
   };
 
@@ -234,18 +234,18 @@ private:
   const ThermalModel thermal_model_;
   const double ratio_;                          // motor angle over output angle
   const double greatest_speed_;                 // largest possible speed of the joint [rad/s]
-  const double current_per_effort_;             // [A], [A/(N.m)]
+  const double current_per_effort_;             // current over effort [-], [A/(N.m)]
   static constexpr std::uint64_t SILENT = 100;  // number of messages without effort, after which the current is 0
   std::uint64_t without_effort_{};              // number of successive messages without an effort
-  bool has_effort_{};                           // a message had an effort
+  bool has_effort_{};                           // whether a message has had an effort
   double arm_friction_{ 1.0 };
   Tracker tracker_;
   VerdictWatch verdict_;
   TrackerOutputs<PublishedTopic> outputs_;
   LifePublisher life_;
   std::optional<Stamp> last_load_stamp_;            // stamp of the last load [ns]
-  std::deque<LoadAt> early_loads_;                  // loads received before the start
-  std::optional<TemperatureAt> early_temperature_;  // last temperature received before the start
+  std::deque<LoadAt> early_loads_;                  // loads received before the first row
+  std::optional<TemperatureAt> early_temperature_;  // last temperature received before the first row
   Refusals refusals_;
   Comparison comparison_;  // last comparison
   RecentEvents recent_refusals_;

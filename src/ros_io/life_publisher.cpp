@@ -19,13 +19,13 @@ namespace hjt
 {
 namespace
 {
-/// Time between two counts of the loop [ns].
+/// Time between two counts of use by the loop [ns].
 constexpr Stamp COUNT_PERIOD = 1'000'000;
-/// Length of the intervals that are handed over [ns]. A longer gap between two instants is not use of the drive.
+/// Length of the intervals of use that the loop hands over [ns]. A longer gap between two instants is not use.
 constexpr Stamp STRETCH = 1'000'000'000;
 constexpr std::size_t STRETCH_SLOTS = 2;
 
-/// `path`, or PATH.1, PATH.2 ... if it exists, so that no file is overwritten.
+/// `path`, or PATH.1, PATH.2 ... if the file exists, so that no file is overwritten.
 std::string unusedName(const std::string& path)
 {
   std::string name = path;
@@ -76,7 +76,7 @@ void LifePublisher::readRecord()
   const std::filesystem::file_status status = std::filesystem::status(path_, error);
   if (status.type() == std::filesystem::file_type::not_found)
   {
-    ROS_INFO_STREAM("There is no record of the drive's use at " << path_ << " yet; the count begins with a new drive");
+    ROS_INFO_STREAM("There is no record of the drive's use at " << path_ << " yet; the drive counts as new");
     return;
   }
   const auto require = [this](bool good, const std::string& why)
@@ -89,7 +89,7 @@ void LifePublisher::readRecord()
   require(std::filesystem::status_known(status), "cannot be reached: " + error.message());
   require(std::filesystem::is_regular_file(status), "must be a file, not a directory, a device or a pipe");
   require(DutyCycle::isOne(path_),
-          "is not a record of a drive's use or cannot be read; the node does not replace another file");
+          "is not a record of a drive's use or is unreadable; the node does not overwrite another file");
   try
   {
     record_ = UsageHistory(parameters_, path_);
@@ -101,8 +101,8 @@ void LifePublisher::readRecord()
     std::error_code refused;
     std::filesystem::rename(path_, aside, refused);
     ROS_ERROR_STREAM("The record of the drive's use cannot be read: "
-                     << error.what() << ". The count begins with a new drive; "
-                     << (refused ? "the file stays, and the node writes nothing" : "the file is kept as " + aside));
+                     << error.what() << ". The drive counts as new; "
+                     << (refused ? "the node does not write the file" : "the file is kept as " + aside));
     path_ = refused ? "" : path_;
   }
 }
@@ -207,7 +207,7 @@ void LifePublisher::publish()
   }
   catch (const std::exception& error)  // a thread must not throw
   {
-    ROS_WARN_STREAM_ONCE("No forecast of the remaining life: " << error.what());
+    ROS_WARN_STREAM_ONCE("The node cannot forecast the remaining life: " << error.what());
   }
 }
 
@@ -223,7 +223,7 @@ void LifePublisher::write()
   }
   catch (const std::exception& error)
   {
-    ROS_WARN_STREAM_THROTTLE(60.0, "The record of the drive's use is not written: " << error.what());
+    ROS_WARN_STREAM_THROTTLE(60.0, "The node cannot write the record of the drive's use: " << error.what());
   }
 }
 }  // namespace hjt

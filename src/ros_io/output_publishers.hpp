@@ -32,11 +32,11 @@
 
 namespace hjt
 {
-/// Sends the messages that a loop has filled, in a thread of its own because serialising and sending allocate and lock.
+/// Thread that sends the messages which a loop has filled. The loop cannot send, because this allocates and locks.
 class PublisherThread
 {
 public:
-  /// `drain`: sends all waiting messages, called in the thread; `is_heard`: whether there are subscribers.
+  /// `drain`: sends all waiting messages; the thread calls it. `is_heard`: whether a topic has a subscriber.
   PublisherThread(std::function<void()> drain, std::function<bool()> is_heard)
     : drain_(std::move(drain)), is_heard_(std::move(is_heard)), thread_([this] { run(); })
   {
@@ -53,13 +53,13 @@ public:
     thread_.join();
   }
 
-  /// For the loop: starts sending. It does not allocate and takes no lock that is held for long.
+  /// For the loop: wakes the thread, which sends. The call does not allocate and takes no lock that is held for long.
   void wakeUp() noexcept { wake_up_.notify_one(); }
 
 private:
-  // Longest delay of a message if the loop's wake-up was missed, because the loop does not wait for the mutex.
+  // Longest delay of a message if the thread misses a wake-up, which can happen because the loop takes no mutex.
   static constexpr std::chrono::milliseconds DRAIN_PERIOD{ 20 };
-  // Longest delay for a change of the faults without subscribers.
+  // Longest delay of a message about changed faults while no topic has a subscriber.
   static constexpr std::chrono::milliseconds IDLE_PERIOD{ 100 };
 
   void run()
@@ -77,9 +77,9 @@ private:
       {
         drain_();
       }
-      catch (const std::exception& error)  // a thread must not throw; the next round continues
+      catch (const std::exception& error)  // a thread must not throw; it tries again in the next round
       {
-        ROS_WARN_STREAM_THROTTLE(60.0, "Messages of the twin are not published: " << error.what());
+        ROS_WARN_STREAM_THROTTLE(60.0, "The node cannot publish messages of the twin: " << error.what());
       }
       lock.lock();
     }
@@ -96,11 +96,11 @@ private:
 struct ChannelCounters
 {
   const char* name{};
-  std::uint64_t computed{};  ///< messages filled since start
-  std::uint64_t dropped{};   ///< messages that were due but not filled because the ring buffer was full
+  std::uint64_t computed{};  ///< number of messages filled since the start of the node
+  std::uint64_t dropped{};   ///< number of due messages that were not filled, because the buffer was full
 };
 
-/// Sink of a live topic: the loop fills preallocated slots, and another thread publishes them.
+/// A live topic. The loop fills preallocated messages, and another thread publishes them.
 template <class Message>
 class OutputChannel
 {
@@ -115,8 +115,8 @@ public:
 
   bool isWanted() const noexcept { return subscribers_.load(std::memory_order_relaxed) > 0; }
 
-  /// For the loop: `fill(Message&)` writes the next message unless it returns false. If the buffer is full, the message
-  /// is dropped and counted.
+  /// For the loop: lets `fill(Message&)` write the next message. If `fill` returns false, there is no message. If the
+  /// buffer is full, the message is dropped and counted.
   template <class Fill>
   void write(Fill&& fill) noexcept
   {
@@ -206,7 +206,7 @@ public:
   }
 
 private:
-  // Slots for lists of faults. Further changes wait for the next instant.
+  // Number of waiting lists of faults. If all are in use, a further change waits for the next instant.
   static constexpr std::size_t FAULT_SLOTS = 16;
 
   struct FaultsAt
@@ -259,13 +259,13 @@ private:
   const JointNames names_;
   SlotRing<FaultsAt> faults_;
   ros::Publisher faults_publisher_;
-  std::uint64_t offered_faults_;  // version of the last offered list
+  std::uint64_t offered_faults_;  // version of the last offered list of faults
   mutable std::mutex text_mutex_;
   std::string active_faults_;
   PublisherThread thread_;  // last, because it uses the other members
 };
 
-/// Publishes the loop's timing once a second in wall clock time, if there are subscribers.
+/// Publishes the loop's timing once a second in wall clock time, if ~timing has subscribers.
 class TimingPublisher
 {
 public:

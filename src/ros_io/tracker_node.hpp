@@ -23,26 +23,26 @@
 
 namespace hjt
 {
-/// Live twins beside a robot: of one joint, or of all joints of an arm, whose motion then gives the load. Each message
-/// is read once.
+/// Live twins beside a robot: of one joint, or of all joints of an arm. The motion of the arm gives the loads. Each
+/// message is read once for all joints.
 class TrackerNode
 {
 public:
-  /// For one joint. @param parameters input.mode must not be commands. @throws ParameterError.
+  /// Node of one joint. @param parameters input.mode must not be commands. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Parameters& parameters);
 
   struct Arm
   {
     ArmDescription description;
     std::vector<Parameters> joints;
-    std::vector<SoundJoint> sound;        ///< reference figures of each joint
-    bool is_identified{};                 ///< the parameters contain the identified friction of this arm
-    std::string name;                     ///< name of a shipped arm that may be another one
+    std::vector<SoundJoint> sound;        ///< reference of each joint
+    bool is_identified{};                 ///< whether the parameters contain the identified friction of this arm
+    std::string name;                     ///< name of the arm; empty without a check of its type
     ArmWatch::MakeCandidates candidates;  ///< candidates for the check of the arm's type; null: no check
-    bool unit_is_given{};                 ///< the user has given the unit of the efforts
+    bool unit_is_given{};                 ///< whether the user has given the unit of the efforts
   };
 
-  /// For all joints of an arm. @throws ParameterError.
+  /// Node of all joints of an arm. @throws ParameterError.
   TrackerNode(ros::NodeHandle& node, const Arm& arm);
 
 private:
@@ -72,24 +72,24 @@ private:
   void look();
   void missTelemetry();
 
-  std::mutex mutex_;  // protects everything below, because callbacks run in several threads
+  std::mutex mutex_;  // protects the members below, because callbacks run in several threads
   TelemetryStream stream_;
   std::vector<std::unique_ptr<JointTracker>> joints_;
-  std::optional<RowFilter> filter_;  // for all joints together
+  std::optional<RowFilter> filter_;  // removes invalid rows, of all joints together
   std::optional<ArmLoad> arm_load_;
-  std::optional<RecordingFit> fit_;  // only for an arm
+  std::optional<RecordingFit> fit_;  // check of the telemetry; only for an arm
   std::optional<LoadWatch> load_;
   std::optional<ArmWatch> arm_;  // check of the arm's type
   std::vector<MotionRow> efforts_;
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;
-  double next_fit_{};            // time of the next check of the fit [s]
+  double next_fit_{};            // time of the next check of the telemetry [s]
   std::vector<MotionRow> rows_;  // rows of the joints in the present message
   std::vector<UnfoldedAngle> angles_;
-  bool has_efforts_{};  // a row had an effort
+  bool has_efforts_{};  // whether a row has had an effort
   double last_time_{};  // time of the last row [s]
   ros::WallTimer timer_;
-  ros::WallTimer patience_;  // waits for the first message
+  ros::WallTimer patience_;  // warns if the first message does not arrive
   ros::Subscriber telemetry_subscriber_;
   ros::Subscriber load_subscriber_;
   ros::Subscriber temperature_subscriber_;

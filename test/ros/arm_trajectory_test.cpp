@@ -86,9 +86,11 @@ TEST(ArmTrajectory, WhatItCannotFollowIsNamed)
     std::vector<ArmSetPoint> points;
     return readTrajectory(message, arm(), PRESENT, 0.0, points);
   };
-  EXPECT_EQ(errors(trajectory({ "b", "knee" }, { { 0.5, 0.5 } })), "the arm has no joint knee; it names b, knee");
-  EXPECT_EQ(errors(trajectory({ "b", "b" }, { { 0.5, 0.5 } })), "it names more than once b; it names b, b");
-  EXPECT_EQ(errors(trajectory({}, { { 0.5 } })), "it names no joint");
+  EXPECT_EQ(errors(trajectory({ "b", "knee" }, { { 0.5, 0.5 } })),
+            "the arm has no joint knee; the message names b, knee");
+  EXPECT_EQ(errors(trajectory({ "b", "b" }, { { 0.5, 0.5 } })),
+            "the message names more than once b; the message names b, b");
+  EXPECT_EQ(errors(trajectory({}, { { 0.5 } })), "the message names no joint");
   EXPECT_THAT(errors(trajectory({ "b" }, { { 9.0 } })),
               testing::HasSubstr("b would reach 13.2 rad/s between the set point at 1 s"));
 }

@@ -101,7 +101,7 @@ class ArmTwin(unittest.TestCase):
 
     def test_4_what_it_cannot_follow_is_refused_and_said(self):
         self.send((dict(START, knee_joint=0.0), 2.0), names=NAMES[:2] + ["knee_joint"])
-        self.said("Refused a trajectory on ~command: the arm has no joint knee_joint; it names elbow_joint, ")
+        self.said("Refused a trajectory on ~command: the arm has no joint knee_joint; the message names elbow_joint, ")
         time.sleep(1.1)  # one warning a second
         self.send((START, 2.0), stamp=rospy.Time.now() + rospy.Duration(90000))
         self.said("Refused a trajectory on ~command: its stamp is more than a day ahead of the clock")
