@@ -154,8 +154,8 @@ void ArmPublishers::drain()
 
 namespace
 {
-// Message definitions of ur_dashboard_msgs (github.com/UniversalRobots/Universal_Robots_ROS_Driver), which give the
-// md5sums.
+// Message definitions of ur_dashboard_msgs (github.com/UniversalRobots/Universal_Robots_ROS_Driver). Their md5sums
+// follow from these texts.
 constexpr const char* ROBOT_MODE =
     "int8 NO_CONTROLLER=-1\nint8 DISCONNECTED=0\nint8 CONFIRM_SAFETY=1\nint8 BOOTING=2\n"
     "int8 POWER_OFF=3\nint8 POWER_ON=4\nint8 IDLE=5\nint8 BACKDRIVE=6\nint8 RUNNING=7\n"
@@ -194,13 +194,13 @@ topic_tools::ShapeShifter makeSafetyMode(bool protective_stop)
 constexpr const char* WRENCH = "wrench";
 constexpr const char* PAYLOAD = "payload";
 constexpr const char* UNLOCK = "unlock_protective_stop";
-/// Time between two warnings of one kind [s].
+/// Least time between two warnings of the same kind [s].
 constexpr double ARM_WARNING_PERIOD = 1.0;
 /// Time between two checks for a protective stop [s].
 constexpr double STATE_PERIOD = 0.05;
 
-/// The node waits for the response surfaces of the start, because a full ring in every drive would be too slow. The
-/// surfaces of later faults are built while the arm runs.
+/// Source of response surfaces for the drives. The function waits for those of the start, because a full ring in every
+/// drive would be too slow. Surfaces for later faults are built while the arm runs.
 SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
 {
   SurfaceSource source = nodeSurfaceSource(false);
@@ -213,7 +213,7 @@ SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
   return source;
 }
 
-/// Parameters of the loop, which does not wait for an input.
+/// Parameters of the loop. The loop of an arm does not wait for an input.
 Parameters loopParameters(Parameters drive)
 {
   drive.input.wait_for_first_input = false;
@@ -455,11 +455,11 @@ std::string ArmNode::command(const trajectory_msgs::JointTrajectory& message, Ar
 {
   if (advance_.stop_reason != nullptr)
   {
-    return std::string("the arm is in a protective stop, which ~") + UNLOCK + " ends";
+    return std::string("the arm is in a protective stop; ~") + UNLOCK + " ends the stop";
   }
   if (message.points.empty())
   {
-    // As in joint_trajectory_controller, independent of the named joints.
+    // All joints stop, whatever joints the message names, as in joint_trajectory_controller.
     give(stopFrom(advance_.shown.read()), goal);
     return "";
   }
@@ -535,7 +535,8 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
   if (joint == description_.joints.end())
   {
     ROS_INFO_STREAM_ONCE("Ignored a message on ~" << topics::JOINT_TEMPERATURES << ": frame_id = '"
-                                                  << printable(message.header.frame_id) << "' is no joint of this arm");
+                                                  << printable(message.header.frame_id)
+                                                  << "' is not a joint of this arm");
     return;
   }
   if (const Range range{ MIN_TEMPERATURE, MAX_TEMPERATURE }; !isWithin(message.temperature, range))
@@ -554,7 +555,7 @@ void ArmNode::receiveTemperature(const sensor_msgs::Temperature& message)
 bool ArmNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response)
 {
   response.success = loop_.reset();
-  response.message = response.success ? "the arm restarts where it began" : "the loop does not respond";
+  response.message = response.success ? "the arm restarts where it began" : "the loop of the arm does not respond";
   return true;
 }
 
@@ -571,7 +572,7 @@ bool ArmNode::unlock(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   response.success = answer == Unlock::DONE;
   response.message = answer == Unlock::DONE  ? "the arm holds its present position" :
                      answer == Unlock::MOVES ? "the arm is still moving" :
-                                               "the loop does not respond";
+                                               "the loop of the arm does not respond";
   return true;
 }
 }  // namespace hjt

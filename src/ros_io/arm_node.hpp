@@ -51,7 +51,7 @@ struct ArmGoal
   std::uint64_t number{};            ///< number of the command; later commands have larger numbers
   std::vector<JointTolerance> path;  ///< tolerances of the joints during the motion; empty: no goal
   std::vector<JointTolerance> end;   ///< tolerances of the joints at the end of the motion
-  double patience{};                 ///< time after the end of the motion by which the arm must be there [s]
+  double patience{};                 ///< time after the end of the motion within which the arm must arrive [s]
 };
 
 enum class GoalState : std::uint8_t
@@ -60,27 +60,27 @@ enum class GoalState : std::uint8_t
   UNDER_WAY,  ///< the arm moves, or has not arrived yet
   REACHED,    ///< the arm arrived in time
   OFF_PATH,   ///< a joint exceeded its tolerance during the motion
-  NOT_THERE,  ///< a joint exceeded its tolerance when the patience ended
+  NOT_THERE,  ///< a joint exceeded its tolerance at the end of ArmGoal::patience
   STOPPED,    ///< a protective stop ended the motion
   FORGOTTEN   ///< a reset of the arm ended the motion
 };
 
-/// How the arm follows the last command that it took.
+/// Report on how the arm follows the last command that the loop has taken.
 struct GoalReport
 {
   std::uint64_t number{};
   GoalState state{};
-  Stamp stamp{};                    ///< time of these states [ns]
+  Stamp stamp{};                    ///< time of `wanted` and `actual` [ns]
   std::size_t joint{};              ///< joint that exceeds its tolerance
-  bool is_speed{};                  ///< whether its speed exceeds the tolerance, not its angle
-  double error{};                   ///< deviation of that joint [rad], [rad/s]
-  double tolerance{};               ///< tolerance of that joint [rad], [rad/s]
+  bool is_speed{};                  ///< whether the speed of `joint` exceeds its tolerance; false: the angle does
+  double error{};                   ///< deviation of `joint` from its set point [rad], [rad/s]
+  double tolerance{};               ///< tolerance of `joint` [rad], [rad/s]
   std::vector<JointMotion> wanted;  ///< set points of the joints
   std::vector<JointMotion> actual;  ///< states of the joints as the controller reports them, without accelerations
 };
 
-/// Judges at each state of the arm whether the arm follows its command, as joint_trajectory_controller does. After
-/// construction no function throws or allocates.
+/// Judges at each step whether the arm follows its command, as joint_trajectory_controller does. After construction no
+/// function throws or allocates.
 class GoalWatch
 {
 public:
@@ -91,7 +91,7 @@ public:
     report_.actual.resize(twin.joints());
   }
 
-  /// Takes the goal of a motion that the arm follows from now on, and returns the last goal in `goal`.
+  /// Takes the goal of the motion that the arm follows from now on. Stores the previous goal in `goal`.
   void begin(ArmGoal& goal) noexcept
   {
     std::swap(goal_, goal);
@@ -140,7 +140,7 @@ public:
   const GoalReport& report() const noexcept { return report_; }
 
 private:
-  /// Whether a joint exceeds its tolerance; the report then has the first such joint.
+  /// Whether a joint exceeds its tolerance. If so, the first such joint is stored in the report.
   bool isBeyond(const std::vector<JointTolerance>& tolerances) noexcept
   {
     for (std::size_t i = 0; i < tolerances.size(); ++i)
@@ -167,8 +167,8 @@ private:
   GoalReport report_;
 };
 
-/// The topics of an arm's twin: joint_states as of the robot's driver, actual and wanted pose of the tool, and for each
-/// drive the topics of a joint's twin in its own namespace.
+/// The topics of an arm's twin: joint_states as of the robot's driver, actual and wanted pose of the tool. Each drive
+/// has the topics of a joint's twin in a namespace of its own.
 class ArmPublishers
 {
 public:
@@ -201,18 +201,18 @@ private:
   PublisherThread thread_;  // last, because it uses the other members
 };
 
-/// State of the arm's twin in /diagnostics: whether it moves, which drives are overloaded, and whether the loop is in
-/// time.
+/// State of the arm's twin in /diagnostics: whether a protective stop holds the arm, which drives are overloaded, and
+/// whether the loop is in time.
 class ArmDiagnostics
 {
 public:
-  /// State at one update, read in the caller's thread.
+  /// State of the arm at one update of the diagnostics.
   struct Snapshot
   {
     LoopStatus loop;
     std::vector<TwinCounters> drives;
     std::string stop_reason;  ///< reason of a protective stop; empty: no stop
-    std::uint64_t dropped{};  ///< messages that could not be published
+    std::uint64_t dropped{};  ///< number of messages that could not be published
   };
   using Read = std::function<Snapshot()>;
 
@@ -228,8 +228,8 @@ private:
   const ArmDescription& arm_;
   const Read read_;
   Snapshot snapshot_;
-  std::vector<RecentEvents> failures_;   // for each joint
-  std::vector<RecentEvents> overloads_;  // for each joint
+  std::vector<RecentEvents> failures_;   // failed steps of each joint
+  std::vector<RecentEvents> overloads_;  // overloads of each joint
   TimingTask timing_;
   DiagnosticTasks tasks_;
   ros::WallTimer timer_;
@@ -242,7 +242,7 @@ class Handover
 public:
   explicit Handover(Value unused) : value_(std::move(unused)) {}
 
-  /// Sets the value, which replaces one that was not taken; thread-safe.
+  /// Sets the value. It replaces a value that the loop has not taken. Thread-safe.
   void give(Value value)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -250,7 +250,7 @@ public:
     is_new_ = true;
   }
 
-  /// For the loop: calls `use(Value&)` if there is a new value. The next `give` frees the content of the used one.
+  /// For the loop: calls `use(Value&)` if there is a new value. The next `give` frees the memory of the used value.
   template <class Use>
   void take(Use&& use) noexcept
   {
@@ -268,15 +268,15 @@ private:
   bool is_new_{};
 };
 
-/// State of the robot with the topic names of ur_robot_driver, latched: robot mode, safety mode, whether it accepts
-/// commands, and the speed scaling. The modes are messages of ur_dashboard_msgs, which need not be installed.
+/// State of the robot on latched topics with the names of ur_robot_driver: robot mode, safety mode, whether the robot
+/// accepts commands, and speed scaling. The modes are messages of ur_dashboard_msgs, which need not be installed.
 class DriverStates
 {
 public:
-  /// `parent`: namespace of the driver's names.
+  /// `parent`: namespace in which the driver publishes.
   explicit DriverStates(const ros::NodeHandle& parent);
 
-  /// Publishes what has changed.
+  /// Publishes each state that has changed.
   void show(bool protective_stop);
 
 private:
@@ -288,8 +288,8 @@ private:
   ros::Publisher speed_scaling_;
 };
 
-/// The live twin of a whole arm without a robot. It moves gently until a trajectory is commanded, publishes the topics
-/// of the robot's driver, and accepts faults of every joint.
+/// The live twin of a whole arm without a robot. The arm moves gently until a trajectory is commanded. The node
+/// publishes the topics of the robot's driver and accepts faults of every joint.
 class ArmNode
 {
 public:
@@ -303,8 +303,8 @@ public:
   /// ParameterError.
   ArmNode(ros::NodeHandle& node, const ArmDescription& arm, const std::vector<Parameters>& drives);
 
-  /// Begins a trajectory that replaces the present motion; without points the arm comes to rest. `goal` receives its
-  /// number. Thread-safe. @returns the reason of a refusal; empty if the trajectory is accepted.
+  /// Begins a trajectory, which replaces the present motion. Without points the arm comes to rest. `goal` receives the
+  /// number of the command. Thread-safe. @returns the reason of a refusal; empty if the trajectory is accepted.
   std::string command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal);
   /// Report on the last command that the loop has taken.
   GoalReport report() const { return advance_.report.read(); }
@@ -371,7 +371,7 @@ private:
   std::mutex command_mutex_;
   MotionLimits limits_;
   std::uint64_t commands_{};                              // number of commands given to the loop
-  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // for each joint
+  std::vector<std::unique_ptr<FaultSubscriber>> faults_;  // subscriber of the faults of each joint
   ros::Subscriber command_subscriber_;
   ros::Subscriber wrench_subscriber_;
   ros::Subscriber payload_subscriber_;
@@ -383,8 +383,8 @@ private:
   ros::WallTimer stop_timer_;
 };
 
-/// Offers the action FollowJointTrajectory in the namespace of `~controller`, as the robot's driver does, during the
-/// lifetime of the result. Without control_msgs at build time it offers nothing and logs this.
+/// Offers the action FollowJointTrajectory in the namespace of `~controller`, as the robot's driver does, while the
+/// result exists. If control_msgs was missing at build time, there is no action, and the function logs this.
 std::shared_ptr<void> offerArmAction(ros::NodeHandle& node, ArmNode& arm);
 
 /// The live twin of an arm with its action server.

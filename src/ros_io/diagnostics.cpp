@@ -15,7 +15,7 @@ namespace
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
-/// Lead of a command's stamp over the clock above which the node warns [s].
+/// Time by which a command's stamp may be ahead of the clock without a warning [s].
 constexpr double AHEAD_WARNING = 1.0;
 
 const char* stateText(LoopState state)
@@ -62,7 +62,7 @@ void addAssessment(const Assessment& assessment, DiagnosticStatusWrapper& status
   status.add("Largest score over threshold [-]", assessment.largest_score);
   status.add("Windows", assessment.windows);
   status.add("Windows at this operating point", assessment.windows_here);
-  status.add("Windows needed there", assessment.windows_needed);
+  status.add("Windows needed at an operating point", assessment.windows_needed);
   status.add("End of the last window [s]", toSeconds(assessment.stamp));
 }
 
@@ -122,9 +122,9 @@ DiagnosticVerdict Diagnostics::judgeDrive() const
 {
   using D = DiagnosticStatus;
   return firstOf({ { !snapshot_.loop.outputs.converged || solver_failures_.areRecent(),
-                     { D::ERROR, "The solver did not converge; the last converged state is kept" } },
-                   { step_cuts_.areRecent(), { D::WARN, "Some steps converged only with a shorter path" } },
-                   { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space" } },
+                     { D::ERROR, "The solver did not converge; the twin keeps its last converged state" } },
+                   { step_cuts_.areRecent(), { D::WARN, "Some steps converged only after they were divided" } },
+                   { jumps_.areRecent(), { D::WARN, "Teeth jumped to another space of the circular spline" } },
                    { coarse_steps_.areRecent(),
                      { D::WARN, "The time step is too long for the joint's fastest natural mode; raise solver.rate" } },
                    { overloads_.areRecent(), { D::WARN, "The torque at the joint exceeds output.torque_limit" } },
@@ -139,15 +139,15 @@ DiagnosticVerdict Diagnostics::judgeInput() const
   return firstOf(
       { { refusals_.areRecent(),
           { D::WARN,
-            "Inputs refused: not finite, not for this joint, no such fault, too large, or stamped far from the "
-            "clock" } },
+            "Inputs were refused: not finite, not for this joint, an invalid fault, a message that is too large, or a "
+            "stamp far from the clock" } },
         { lost_inputs_.areRecent(), { D::WARN, "Inputs were lost because the queue was full" } },
         { clamps_.areRecent(), { D::WARN, "A torque exceeded its limit and was clamped" } },
         { late_inputs_.areRecent(), { D::WARN, "Inputs arrived too late for their stamp; raise input.delay" } },
-        { !snapshot_.loop.command_seen, { D::WARN, "No motor torque command yet" } },
+        { !snapshot_.loop.command_seen, { D::WARN, "No motor torque has been commanded yet" } },
         { age > command_timeout_ || timeouts_.areRecent(),
-          { D::WARN, "No motor torque command for longer than input.command_timeout; the torque is zero" } },
-        { age < -AHEAD_WARNING, { D::WARN, "Command stamps are ahead of the clock" } } },
+          { D::WARN, "No motor torque was commanded for longer than input.command_timeout; the torque is zero" } },
+        { age < -AHEAD_WARNING, { D::WARN, "The stamps of the commands are ahead of the clock" } } },
       { D::OK, "Commands arrive" });
 }
 
@@ -157,7 +157,7 @@ DiagnosticVerdict Diagnostics::judgeHealth() const
   const bool input = loop.command_seen && toSeconds(loop.clock - loop.last_command) <= command_timeout_;
   if (!input)
   {
-    return { DiagnosticStatus::STALE, "The input has stopped. Last: " + verdictText(loop.assessment) };
+    return { DiagnosticStatus::STALE, "The input has stopped. Last assessment: " + verdictText(loop.assessment) };
   }
   return { static_cast<std::uint8_t>(loop.assessment.level), verdictText(loop.assessment) };
 }
@@ -179,7 +179,7 @@ void Diagnostics::reportDrive(DiagnosticStatusWrapper& status) const
   status.add("Solver residual [N]", outputs.residual);
   status.add("Solver iterations", outputs.iterations);
   status.add("Steps", counters.steps);
-  status.add("Substeps a step", outputs.substeps);
+  status.add("Substeps per step", outputs.substeps);
   status.add("Steps cut", counters.step_cuts);
   status.add("Steps in which teeth jumped", counters.jumps);
   status.add("Steps too long", counters.coarse_steps);
@@ -205,7 +205,7 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Faults, refused", snapshot_.messages.refused_fault + counters.faults.refused);
   status.add("Too large, refused", snapshot_.messages.too_large);
   status.add("Stamp far from the clock, refused", loop.far_stamps);
-  status.add("Faults without room", counters.faults.no_room);
+  status.add("Faults beyond the largest number, refused", counters.faults.no_room);
   status.add("Too late for their stamp", counters.input.late + counters.faults.late);
   status.add("Dropped, queue full", counters.input.overflow + snapshot_.overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);

@@ -22,7 +22,7 @@ constexpr double LINE_WIDTH = 0.2e-3;   // width of a line [m]
 constexpr double TEXT_HEIGHT = 1.8e-3;  // height of a letter [m]
 constexpr double ARROW_WIDTH = 0.2e-3;  // width of the shaft [m]
 constexpr double ARROW_HEAD = 0.7e-3;   // length and width of the head [m]
-constexpr double MIN_ARROW = 0.2e-3;    // shorter arrows are not drawn [m]
+constexpr double MIN_ARROW = 0.2e-3;    // least length of a drawn arrow [m]
 constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
 constexpr double ROOT_SHARE = 0.28;
 constexpr double RING_HEIGHTS = 2.0;    // height of the circular spline behind its roots, in tooth heights
@@ -75,7 +75,7 @@ void addPoint(Marker& marker, const Point& at)
   marker.points.push_back(point);
 }
 
-/// Adds both faces, because rviz does not draw the back of a triangle.
+/// Adds front and back of a triangle, because rviz does not draw the back.
 void addTriangle(Marker& marker, const Point& a, const Point& b, const Point& c, const std_msgs::ColorRGBA& made)
 {
   for (const Point* corner : { &a, &b, &c, &a, &c, &b })
@@ -114,7 +114,7 @@ Point direction(double angle)
   return { std::cos(angle), std::sin(angle) };
 }
 
-/// Stretches distances from a circle about the origin.
+/// Stretches radial distances from a circle about the origin.
 struct Stretch
 {
   double radius;  // radius of the circle [m]
@@ -139,7 +139,7 @@ DriveMarkers::DriveMarkers(const Parameters& parameters, const MarkerStyle& styl
 {
 }
 
-/// Rim, teeth and forces, with the numbers for the text.
+/// Markers of rim, teeth and forces, and the numbers for the text.
 struct DriveMarkers::Teeth
 {
   Marker flexspline;
@@ -151,7 +151,7 @@ struct DriveMarkers::Teeth
   double largest_pressing{};  // largest force of the wave generator on a tooth [N]
 };
 
-/// The ellipse and its major axis.
+/// Draws the ellipse of the wave generator, and its major axis.
 std::pair<Marker, Marker> DriveMarkers::drawWaveGenerator(const std_msgs::Header& header, double angle) const
 {
   const Stretch drawn{ fixed_radius_, style_.exaggeration };
@@ -176,7 +176,7 @@ std::pair<Marker, Marker> DriveMarkers::drawWaveGenerator(const std_msgs::Header
   return { std::move(wave), std::move(axis) };
 }
 
-/// Draws a tooth on its segment of the rim, with its forces.
+/// Draws tooth `i` with its segment of the rim and its forces.
 void DriveMarkers::drawTooth(const harmonic_joint_twin::ContactForces& forces, std::size_t i, Teeth& teeth) const
 {
   const Stretch drawn{ fixed_radius_, style_.exaggeration };
@@ -226,7 +226,7 @@ Marker DriveMarkers::drawCircularSpline(const std_msgs::Header& header, double o
   const double pitch = TWO_PI / gear_.teeth_circular_spline;
   for (int i = 0; i < gear_.teeth_circular_spline; ++i)
   {
-    // A tooth is half a pitch from the space of equal number.
+    // A tooth of the circular spline is half a pitch from the space of equal number.
     const double middle = output_angle + (i + 0.5) * pitch;
     const auto at = [&](double radius, double pitches) { return drawn(radius * direction(middle + pitches * pitch)); };
     addQuad(circular, at(tip, -TIP_SHARE), at(tip, TIP_SHARE), at(root, ROOT_SHARE), at(root, -ROOT_SHARE), DARK_STEEL);

@@ -18,10 +18,10 @@ using diagnostic_msgs::DiagnosticStatus;
 
 /// Time without a row after which the telemetry counts as stopped [s].
 constexpr double STOPPED_AFTER = 0.5;
-/// Difference of a stamp from the clock above which the node warns [s].
+/// Largest difference of a stamp from the clock without a warning [s].
 constexpr double OFFSET_WARNING = 0.5;
 
-/// Removes the full stop, because texts of diagnostics have none.
+/// Removes the full stop at the end, because texts of diagnostics have none.
 std::string withoutStop(std::string sentences)
 {
   if (!sentences.empty() && sentences.back() == '.')
@@ -53,7 +53,7 @@ JointTracker::JointTracker(ros::NodeHandle& node, const Parameters& parameters, 
   , ratio_(nominalRatio(parameters.gear))
   , greatest_speed_(hjt::greatestSpeed(parameters))
   , current_per_effort_(hjt::currentPerEffort(parameters))
-  // Built before the first row, so that equal rows give equal numbers.
+  // The response surface is ready before the first row, so that equal rows give equal numbers.
   , tracker_(parameters, parameters.input.mode, nodeSurfaceSource(false))
   , verdict_(tracker_, { sound.own, is_identified })
   , outputs_(node, parameters)
@@ -185,8 +185,8 @@ void JointTracker::takeLoad(const LoadAt& load)
   }
 }
 
-/// Handles a load once there is a zero of time. It is refused if its clock is not that of the rows. A load without
-/// stamp is valid from the present time of the rows' clock.
+/// Passes a load to the tracker, after the zero of time is set. Refuses a load whose stamp is not of the rows' clock. A
+/// load without a stamp is valid from the present time of the rows' clock.
 void JointTracker::passLoad(const LoadAt& load)
 {
   const Stamp stamp = load.stamp.value_or(stream_.clock.at(load.received));
@@ -218,7 +218,7 @@ void JointTracker::receiveTemperature(const sensor_msgs::Temperature& message, S
   }
 }
 
-/// Handles a temperature as passLoad does a load.
+/// Passes a temperature to the tracker, as passLoad passes a load.
 void JointTracker::passTemperature(const TemperatureAt& temperature)
 {
   const Stamp stamp = temperature.stamp.value_or(stream_.clock.at(temperature.received));
@@ -267,7 +267,7 @@ void JointTracker::look(const ros::WallTime& now)
   logState();
 }
 
-/// Logs the arrival of telemetry, and changes of the worst level.
+/// Logs that telemetry arrives, and each change of the worst level.
 void JointTracker::logState()
 {
   if (tracker_.counters().compared == 0)
@@ -293,7 +293,7 @@ bool JointTracker::hasStopped() const
   return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
 }
 
-/// Verdict on the rows, or that the twin fails.
+/// Verdict on the rows. If the solver has failed recently, its level is ERROR with this reason.
 Verdict JointTracker::verdictNow() const
 {
   Verdict verdict = verdict_.now();
@@ -305,7 +305,7 @@ Verdict JointTracker::verdictNow() const
   return verdict;
 }
 
-/// Publishes a verdict when it changes or covers more rows. The last one stays latched.
+/// Publishes a verdict if it has changed or covers more rows. The last verdict stays latched.
 void JointTracker::publishVerdict()
 {
   if (tracker_.counters().compared == 0)
@@ -339,8 +339,8 @@ DiagnosticVerdict JointTracker::judgeTelemetry() const
         { refused,
           { D::WARN,
             "Messages were refused: incomplete, not finite, all efforts zero, too large, a stamp far from the clock, "
-            "an impossible temperature, or a load although the arm gives it" } },
-        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back; these rows are ignored" } },
+            "an impossible temperature, or a load that the node itself computes for the arm" } },
+        { recent_disorder_.areRecent(), { D::WARN, "Stamps repeat or go back; the node ignores such rows" } },
         { recent_missing_.areRecent(), { D::WARN, "Rows are missing" } },
         { std::abs(timing.offset) > OFFSET_WARNING, { D::WARN, "Stamps differ from this machine's clock" } },
         { verdict_.misfit().exists(),
@@ -360,7 +360,7 @@ DiagnosticVerdict JointTracker::judgeComparison() const
 {
   if (tracker_.counters().compared == 0)
   {
-    return { DiagnosticStatus::STALE, "There is nothing to compare" };
+    return { DiagnosticStatus::STALE, "There is no row to compare" };
   }
   const Verdict verdict = verdictNow();
   const std::string text = withoutStop(verdictText(verdict));
@@ -377,11 +377,11 @@ DiagnosticVerdict JointTracker::judgeHealth() const
   const Assessment& assessment = tracker_.assessment();
   if (tracker_.counters().compared == 0 && hasStopped())
   {
-    return { DiagnosticStatus::STALE, "There is nothing to assess" };
+    return { DiagnosticStatus::STALE, "There is no window to assess" };
   }
   if (hasStopped())
   {
-    return { DiagnosticStatus::STALE, "The telemetry has stopped. Last: " + verdictText(assessment) };
+    return { DiagnosticStatus::STALE, "The telemetry has stopped. Last assessment: " + verdictText(assessment) };
   }
   if (const std::optional<Misfit> misfit = verdict_.whyNotJudged())
   {
@@ -414,12 +414,12 @@ void JointTracker::reportTelemetry(DiagnosticStatusWrapper& status) const
   status.add("Reception less stamp [s]", timing.offset);
   status.add("Jitter of reception, 95 % [s]", timing.jitter);
   status.add("Unknown joint, refused", refusals_.unknown_joint);
-  status.add("Names in the last of those", stream_.found_names);
+  status.add("Names in the last message without the joint", stream_.found_names);
   status.add("Without position or effort, refused", refusals_.incomplete);
   status.add("Efforts all zero, refused", stream_.without_effort);
-  status.add("Angles that cannot be, left out", stream_.left_out.impossible + stream_.left_out.unreachable);
-  status.add("Values that repeat in motion, left out", stream_.left_out.repeated);
-  status.add("Stamps in bunches, left out", stream_.left_out.bunched);
+  status.add("Impossible angles, left out", stream_.left_out.impossible + stream_.left_out.unreachable);
+  status.add("Values that repeat during a motion, left out", stream_.left_out.repeated);
+  status.add("Rows with bunched stamps, left out", stream_.left_out.bunched);
   status.add("Jumps of angles by a turn, taken out", stream_.folds);
   status.add("Mounting that is not configured", stream_.mounting.empty() ? "none found" : stream_.mounting);
   status.add("Drag of the tool", stream_.drag.empty() ? "none found" : stream_.drag);
@@ -449,23 +449,24 @@ void JointTracker::reportComparison(DiagnosticStatusWrapper& status) const
   {
     status.add(subjectTitle(finding.subject), levelName(finding.level) + (". " + findingText(verdict, finding)));
   }
-  status.add("Verdict is of the last [s]", reach.end - reach.begin);
+  status.add("Length of the judged rows [s]", reach.end - reach.begin);
   status.add("Residual of the current [A]", comparison_.current.residual());
-  status.add("Its band [A]", comparison_.current.band);
+  status.add("Band of the current [A]", comparison_.current.band);
   status.add("Residual of the position [rad]", comparison_.position.residual());
   status.add("Residual of the velocity [rad/s]", comparison_.velocity.residual());
-  status.add("Joint torque net of friction [N.m]", comparison_.joint_torque);
+  status.add("Joint torque without friction [N.m]", comparison_.joint_torque);
   status.add("Load [N.m]", comparison_.load_torque);
   status.add("Temperature [degC]",
              counters.compared > 0 ? comparison_.temperature : tracker_.evidence().parameters().input.temperature);
-  status.add("Temperature is", comparison_.temperature_received          ? "received" :
-                               tracker_.hasEstimate()                    ? "estimated from the friction of all joints" :
-                               thermal_model_ == ThermalModel::TWO_NODES ? "estimated from the losses of the motion" :
-                                                                           "configured");
-  status.add("Friction that all joints have in common [-]", arm_friction_);
+  status.add("Source of the temperature", comparison_.temperature_received ? "received" :
+                                          tracker_.hasEstimate() ? "estimated from the friction of all joints" :
+                                          thermal_model_ == ThermalModel::TWO_NODES ?
+                                                                   "estimated from the losses of the motion" :
+                                                                   "configured");
+  status.add("Common factor of the joints' friction [-]", arm_friction_);
   status.add("Rows compared", counters.compared);
   status.add("Rows outside the band", counters.outside);
-  status.add("Share of the last ones outside [-]", tracker_.outsideShare());
+  status.add("Share outside the band in the last 30 s [-]", tracker_.outsideShare());
   status.add("Steps failed", counters.solver_failures + outputs_.failures());
   if (lag)
   {

@@ -18,20 +18,19 @@
 namespace hjt
 {
 /// Counts the drive's use and publishes its remaining life. The thread that runs the twin counts the use. A thread of
-/// this class forecasts, publishes and writes the file every life.forecast_period in wall clock time, and at the end.
-///
-/// A record with an unreadable row is renamed, and the count starts again.
+/// this class forecasts, publishes and writes the record of use every life.forecast_period in wall clock time, and at
+/// the end. A record with an unreadable row is renamed, and the drive then counts as new.
 class LifePublisher
 {
 public:
-  /// @throws ParameterError if life.use_record exists and is not a record.
+  /// @throws ParameterError if the file life.use_record exists and is not a record of use.
   LifePublisher(ros::NodeHandle& node, const Parameters& parameters);
 
-  /// Must follow the last `offer`: adds the remaining use and writes the file.
+  /// Adds the remaining use and writes the record. Must not be called before the last `offer`.
   ~LifePublisher();
 
   /// For the loop: adds the use since the last call, without allocation or lock. Speed of the motor [rad/s], torque at
-  /// the joint [N.m], temperature of the drive [degC]. The assessment is stored if it `supersedes` the earlier ones.
+  /// the joint [N.m], temperature of the drive [degC]. The assessment is stored if it `supersedes` the stored one.
   void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
              const Assessment& assessment) noexcept;
 
@@ -41,7 +40,7 @@ private:
     Stamp until;
     UsageHistory use;
     Assessment assessment;  // last stored assessment; its state is WAITING without one
-    std::uint64_t windows;  // window count of the assessment; a smaller one follows a reset
+    std::uint64_t windows;  // number of windows of the assessment; the number falls at a reset
   };
   void readRecord();
   void run();
@@ -51,8 +50,8 @@ private:
 
   const std::string joint_;
   const LifeParameters parameters_;
-  std::string path_;  // path of the record; empty: none
-  Stretch counted_;   // use counted by the loop and not yet handed over
+  std::string path_;  // path of the record of use; empty: no record
+  Stretch counted_;   // use that the loop has counted but not yet handed over
   Stamp counted_from_{};
   Stamp last_{};
   SlotRing<Stretch> stretches_;

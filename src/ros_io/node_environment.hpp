@@ -23,13 +23,13 @@ inline Stamp rosNow()
   return fromRosTime(ros::Time::now());
 }
 
-/// Whether the clock is the system's, or simulated on /clock; known once the node runs.
+/// Kind of the ROS clock: that of the system, or simulated on /clock. Known after the start of the node.
 inline ClockKind rosClockKind()
 {
   return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
 }
 
-/// Requests the parameters of section realtime from the system; refusals are logged.
+/// Requests from the system what section realtime demands. Logs what the system refuses.
 inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
 {
   RealtimeState state = applyRealtime(parameters, loop.thread());
@@ -40,7 +40,8 @@ inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinL
   return state;
 }
 
-/// The user's cache of response surfaces, with progress and notices in the log. `background`: see SurfaceSource.
+/// Source of response surfaces with the user's cache, and with progress and notices in the log. `background`: see
+/// SurfaceSource.
 inline SurfaceSource nodeSurfaceSource(bool background)
 {
   return { surfaceCacheDirectory(),
@@ -50,9 +51,9 @@ inline SurfaceSource nodeSurfaceSource(bool background)
            background };
 }
 
-/// Lets SIGTERM and SIGHUP end a node as SIGINT does; roscpp handles only SIGINT. A SIGHUP ignored by nohup stays
-/// ignored. SIGXFSZ is ignored, so that writing beyond a size limit fails as on a full disk. Must be called after
-/// ros::init.
+/// Makes SIGTERM and SIGHUP end a node as SIGINT does, because roscpp handles only SIGINT. A SIGHUP that nohup ignores
+/// stays ignored. SIGXFSZ is ignored, so that a write beyond the limit of file sizes fails like a write to a full disk.
+/// Must be called after ros::init.
 inline void shutDownOnSignals()
 {
   const auto request = [](int) { ros::requestShutdown(); };
@@ -64,7 +65,7 @@ inline void shutDownOnSignals()
   }
 }
 
-/// Namespace of a joint of an arm in the ROS graph: NAMESPACE/SHORT_NAME/NODE.
+/// Namespace of the topics of an arm's joint: NAMESPACE/SHORT_NAME/NODE.
 inline std::string jointName(const ArmJoint& joint)
 {
   const std::string& name = ros::this_node::getName();

@@ -20,7 +20,7 @@ namespace
 {
 using XmlRpc::XmlRpcValue;
 
-/// Parameter that diagnostic_updater reads from this namespace.
+/// Name of a parameter of the node that is not a parameter of the twin: the period of /diagnostics.
 constexpr const char* DIAGNOSTIC_PERIOD = "diagnostic_period";
 
 // XmlRpcValue converts only non-const references.
@@ -126,7 +126,7 @@ ParameterMap readAll(const std::string& parameter_namespace)
   return map;
 }
 
-/// Whether `parseParameters` treats both values alike.
+/// Whether `parseParameters` makes equal parameters of the two values.
 bool areAlike(const Value& a, const Value& b)
 {
   const std::optional<double> number_a = numberOf(a);

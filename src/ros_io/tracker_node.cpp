@@ -25,12 +25,12 @@ namespace
 {
 /// Time between two verdicts [s].
 constexpr double VERDICT_PERIOD = 1.0;
-/// Time without a first message after which the node warns [s].
+/// Time after the start at which the node warns if no message has arrived [s].
 constexpr double MESSAGE_PATIENCE = 10.0;
-/// Largest shown length of the names in a message without a joint [bytes].
+/// Largest length at which the node shows the names in a message [bytes].
 constexpr std::size_t MAX_NAMES = 500;
 
-/// Topics on which JointState messages are published; empty: none, or the master does not respond.
+/// Topics on which JointState messages are published. Empty if there are none, or if the master does not respond.
 std::vector<std::string> publishedJointStates()
 {
   XmlRpc::XmlRpcValue arguments;
@@ -119,7 +119,7 @@ void TrackerNode::subscribe(ros::NodeHandle& node)
       topics::JOINT_TEMPERATURES, [this](const auto& event) { receiveTemperature(event); });
 }
 
-/// Reason why a message contains no row, as a clause.
+/// Clause: why the message contains no row.
 std::string TrackerNode::lackOf(const sensor_msgs::JointState& message) const
 {
   std::vector<std::string> names;
@@ -163,7 +163,7 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   {
     stream_.found_names = printable(joined(message.name), MAX_NAMES);
   }
-  // Others may publish on this topic: a message of a gripper must not cause a warning.
+  // Other devices may publish on this topic. A message of a gripper, for example, must not cause a warning.
   if (unknown > 0 && (unknown < joints_.size() || !stream_.clock.hasStarted()))
   {
     ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Messages on " << stream_.topic << " lack " << unknown << " of "
@@ -187,7 +187,7 @@ void TrackerNode::receiveTelemetry(const JointStateEvent& event)
   push(stamp);
 }
 
-/// Pushes the rows of the present message.
+/// Passes on the rows of the present message: to the joints, and to the checks of the arm.
 void TrackerNode::push(Stamp stamp)
 {
   const TelemetryClock::Row taken = stream_.clock.take(stamp, stream_.last_received);
@@ -313,7 +313,7 @@ void TrackerNode::receiveTemperature(const ros::MessageEvent<const sensor_msgs::
   stream_.other_temperatures += is_of_joint ? 0 : 1;
 }
 
-/// Judges each joint after the friction common to all, as `joint_twin compare` does with a recording.
+/// Judges each joint apart from the common factor of all joints, as `joint_twin compare` does with a recording.
 void TrackerNode::judge(const ros::WallTime& now)
 {
   if (now < next_verdict_)
@@ -365,13 +365,13 @@ void TrackerNode::missTelemetry()
   }
   ROS_WARN_STREAM(
       "No message on " << stream_.topic << " yet. "
-                       << (is_announced   ? "Its publisher does not send messages" :
+                       << (is_announced   ? "A publisher of this topic exists but sends no messages" :
                            others.empty() ? "No node publishes a JointState; check whether the driver runs" :
                                             "A JointState is published on " + printable(joined(others), MAX_NAMES) +
                                                 "; select it with measured:="));
 }
 
-/// Prepares for rows of another clock.
+/// Forgets all rows, because the next rows have stamps of another clock.
 void TrackerNode::restart()
 {
   resetFit();
@@ -401,7 +401,7 @@ void TrackerNode::updateFit(const ArmSample& sample)
   lookAtFit();
 }
 
-/// Checks the fit of the rows so far.
+/// Checks whether the telemetry up to now fits together, and tells each joint of its misfit.
 void TrackerNode::lookAtFit()
 {
   const bool settled = fit_->isSettled() && (!load_ || load_->isSettled()) && (!arm_ || arm_->isSettled());
@@ -435,7 +435,7 @@ void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
   tryOnArm([this] { arm_->add(efforts_); });
 }
 
-/// Takes the result of the ranking by the law of `joint_twin compare`, whether rows still arrive or not.
+/// Takes the result of the ranking of arms, which follows the rule of `joint_twin compare`, also without new rows.
 void TrackerNode::lookAtArm()
 {
   if (!arm_)
@@ -451,7 +451,7 @@ void TrackerNode::lookAtArm()
   }
   if (arm_ && arm_->other() != before)
   {
-    ROS_WARN_STREAM((arm_->other().empty() ? "The currents no longer fit another arm clearly better" :
+    ROS_WARN_STREAM((arm_->other().empty() ? "The currents no longer fit another arm clearly better than this one" :
                                              "Not judged: " + otherArmText(arm_->other())));
   }
   lookAtFit();
@@ -463,14 +463,14 @@ void TrackerNode::tryOnArm(const std::function<void()>& act)
   {
     act();
   }
-  catch (const std::exception& error)  // unreadable files of the arms, or no thread
+  catch (const std::exception& error)  // a file of an arm is unreadable, or the system allows no thread
   {
     ROS_WARN_STREAM("The check for another type of arm failed: " << error.what());
     arm_.reset();
   }
 }
 
-/// Text on the time at which the payload changed; empty if the payload is equal in all rows.
+/// Text with the time at which the payload changed; empty if the payload is equal in all rows.
 std::string TrackerNode::sinceText(double since) const
 {
   return std::isinf(since) ?
@@ -488,7 +488,8 @@ JudgedJoints TrackerNode::judgedJoints() const
   return { *fit_, fit_->whyNotJudged(), std::move(frictions), repeat_tolerance_ };
 }
 
-/// Uses the load that the currents show instead of the configured one, by the test of `joint_twin compare`.
+/// Tests by the rule of `joint_twin compare` whether the currents show another load than the configured one. If so, the
+/// node uses the load that the currents show.
 void TrackerNode::lookAtLoad()
 {
   if (!load_ || !load_->isDue())
@@ -516,8 +517,8 @@ void TrackerNode::lookAtLoad()
   {
     ROS_INFO_STREAM(
         (load_->isTrying() ?
-             "The twin tries another load than the configured one; there is no WARN until the test is finished" :
-         !std::isinf(assumed.since) ? "The payload has changed; the joints are judged from now on" :
+             "The twin tries a load that differs from the configured one; no WARN is given until the test is finished" :
+         !std::isinf(assumed.since) ? "The payload has changed; the joints are judged from the change on" :
          assumed.isConfigured()     ? "The twin uses the configured load again" :
                                       "The twin uses the earlier load again"));
     arm_load_.emplace(load_->arm());

@@ -146,7 +146,7 @@ class ArmTwin(unittest.TestCase):
             message = Temperature(temperature=degrees)
             message.header.frame_id = joint
             self.temperature.publish(message)
-        self.said("Ignored a message on ~joint_temperatures: frame_id = 'left_elbow_joint' is no joint of this arm")
+        self.said("Ignored a message on ~joint_temperatures: frame_id = 'left_elbow_joint' is not a joint of this arm")
         self.said("Refused a temperature on ~joint_temperatures: temperature = 200.0 [degC] is out of range")
         wait_until(lambda: health.messages() and health.messages()[-1].grease_temperature == 32.0, "the temperature")
 

@@ -164,7 +164,7 @@ class UR5(unittest.TestCase):
                 self.assertGreaterEqual(message.temperature, low - 1e-9, twin)
                 self.assertLessEqual(message.temperature, high + 1e-9, twin)
             values = self.diagnostics[twin].fresh("Drive")
-            self.assertEqual(values["Temperature is"], "received" if published else "configured", twin)
+            self.assertEqual(values["Source of the temperature"], "received" if published else "configured", twin)
             refused = int(self.diagnostics[twin].fresh("Input")["Temperatures refused"])
             self.assertEqual(refused, 2 * len(range(0, round(SECONDS / PERIOD), 100)) if published else 0, twin)
 
@@ -237,7 +237,7 @@ class UR5(unittest.TestCase):
             self.assertEqual(int(values["Not finite, refused"]), self.sent["not_finite"])
             self.assertEqual(int(values["Without position or effort, refused"]), self.sent["incomplete"])
             self.assertEqual(int(values["Unknown joint, refused"]), self.sent["unknown"])
-            self.assertIn("gripper", values["Names in the last of those"])
+            self.assertIn("gripper", values["Names in the last message without the joint"])
             self.assertEqual(int(values["Stamps repeated"]), self.sent["repeated"])
             self.assertEqual(int(values["Gaps that cut the stream"]), 1)
             self.assertAlmostEqual(float(values["Period [s]"]), PERIOD, delta=1e-4)

@@ -28,13 +28,13 @@ using Point = trajectory_msgs::JointTrajectoryPoint;
 
 constexpr const char* DRIVERS_CONTROLLER = "scaled_pos_joint_traj_controller";
 constexpr const char* FOLLOW = "follow_joint_trajectory";
-// Defaults of a goal, as in ur_robot_driver, config/ur5_controllers.yaml.
+// Default tolerances of a goal, as in config/ur5_controllers.yaml of ur_robot_driver.
 constexpr double PATH_POSITION = 0.2;  // tolerance of an angle during the motion [rad]
 constexpr double END_POSITION = 0.1;   // tolerance of an angle at the end [rad]
 constexpr double END_SPEED = 0.05;     // tolerance of a speed at the end [rad/s]
 constexpr double PATIENCE = 0.6;       // time after the end of the motion by which the arm must arrive [s]
 
-constexpr double LOOK_PERIOD = 0.01;  // period of checking the report [s]
+constexpr double LOOK_PERIOD = 0.01;  // time between two checks of the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
 /// Sets a tolerance as JointTolerance.msg defines it: 0 keeps the default, a negative value means no tolerance.
@@ -53,7 +53,7 @@ std::string takeTolerances(const std::vector<control_msgs::JointTolerance>& give
                                     [&](const ArmJoint& other) { return other.name == each.name; });
     if (joint == arm.joints.end())
     {
-      return std::string(what) + " names '" + printable(each.name) + "', which is no joint of the arm";
+      return std::string(what) + " names '" + printable(each.name) + "', which is not a joint of the arm";
     }
     if (std::isnan(each.position) || std::isnan(each.velocity))
     {
