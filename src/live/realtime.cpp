@@ -20,7 +20,7 @@ std::string userName()
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
 }
 
-/// Limit of this process in units of `unit`.
+/// Text of this process' limit for `resource`, in units of `unit`.
 std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
 {
   rlimit limit{};
@@ -28,7 +28,7 @@ std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
   return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur / unit);
 }
 
-/// Text on how to permit a refused request.
+/// Text that says how the user can permit a refused request.
 std::string remedy(const std::string& limits_line, const std::string& capability)
 {
   return ". To permit it, add this line to /etc/security/limits.conf: '" + userName() + " - " + limits_line +
@@ -64,7 +64,7 @@ void applyMemoryLock(bool lock_memory, RealtimeState& state)
   {
     return;
   }
-  // Later memory is not that of the loop, which does not allocate; locking all future memory would fail at a low limit.
+  // The loop does not allocate, so it does not need later memory. Locking future memory too would fail at a low limit.
   if (mlockall(MCL_CURRENT) == 0)
   {
     state.memory = "locked";

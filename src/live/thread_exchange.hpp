@@ -20,11 +20,11 @@ struct LiveInput
   std::size_t joint{};  ///< index of the joint; 0 with one twin
 
   Stamp stamp() const noexcept { return stampOf(input); }
-  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< null: the input is a fault
+  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< the input; null if it is a fault
   bool isOf(InputKind kind) const noexcept { return value() != nullptr && value()->kind == kind; }
 };
 
-/// Queue of inputs from the callbacks to the loop. Callbacks may wait for each other and for the loop; the loop never
+/// Queue of inputs from callbacks to the loop. A callback may wait for another one or for the loop. The loop never
 /// waits.
 class Inbox
 {
@@ -33,8 +33,8 @@ public:
 
   Inbox() { inputs_.reserve(CAPACITY); }
 
-  /// Queues an input; thread-safe. Values that are not finite are refused, and inputs beyond the capacity dropped. Both
-  /// are counted.
+  /// Queues an input; thread-safe. An input that is not finite is refused, and an input beyond the capacity is dropped.
+  /// The queue counts refused and dropped inputs.
   void push(const TwinInput& input, std::size_t joint = 0)
   {
     if (const auto* value = std::get_if<Input>(&input); value != nullptr && !std::isfinite(value->value))
@@ -51,9 +51,9 @@ public:
     inputs_.push_back({ input, joint });
   }
 
-  /// Calls `use(inputs)` with the waiting inputs in order of arrival; inputs that `use` leaves stay in the queue. Only
-  /// the loop may call this function. It does not allocate. @returns false and does nothing if a callback holds the
-  /// lock.
+  /// Calls `use(inputs)` with the waiting inputs in order of arrival. Inputs that `use` does not remove stay in the
+  /// queue. Only the loop may call this function. It does not allocate. If a callback holds the lock, the function does
+  /// nothing and returns false.
   template <class Use>
   bool use(Use&& use) noexcept
   {
@@ -75,8 +75,8 @@ private:
   std::atomic<std::uint64_t> overflow_{ 0 };
 };
 
-/// Ring buffer of preallocated messages between one writer and one reader, neither of which ever waits. Slots are
-/// filled and read in place, so that messages with arrays are never copied, moved or resized.
+/// Ring buffer of preallocated messages between one writer and one reader. Writer and reader never wait. Messages are
+/// filled and read in their slots, so that their arrays are never copied, moved or resized.
 template <class Message>
 class SlotRing
 {
@@ -94,7 +94,7 @@ public:
   /// For the writer: hands the claimed slot to the reader.
   void commit() noexcept { written_.fetch_add(1, std::memory_order_release); }
 
-  /// For the reader: the oldest message; nullptr if there is none.
+  /// For the reader: the oldest message; nullptr if the buffer is empty.
   const Message* front() const noexcept
   {
     const std::size_t read = read_.load(std::memory_order_relaxed);

@@ -20,19 +20,20 @@ using std::chrono::steady_clock;
 
 /// Period of the loop in wall clock time.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
-/// Upper bound of the shortest sleep. Messages of several instants then go out together, and threads wake less often.
+/// Largest value of the shortest sleep. With a sleep, messages of several instants go out together, and threads wake
+/// less often.
 constexpr milliseconds SHORT_PAUSE{ 4 };
-/// Longest sleep while no output is due; it bounds the time until a request is answered.
+/// Longest sleep while no output is due. It limits the time in which a request is answered.
 constexpr milliseconds MAX_PAUSE{ 50 };
-/// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, and the loop stays responsive while it catches up.
+/// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, so that a loop that is behind catches up.
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
 /// Time after which a cycle begins no further step, so that a slow solver does not delay requests.
 constexpr milliseconds LONGEST_WORK{ 100 };
-/// Largest backward step of the clock that counts as time synchronisation [ns]. The loop waits until it has passed.
+/// Largest backward step of the clock that counts as time synchronisation [ns]. The loop then waits for the clock.
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// Longest time that a request waits for the loop.
 constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
-/// Upper bound of the loop's use of its stack [bytes].
+/// Size of the stack that the loop may use [bytes].
 constexpr std::size_t STACK_SIZE = 256 * 1024;
 
 Stamp nanoseconds(steady_clock::duration duration)
@@ -40,7 +41,7 @@ Stamp nanoseconds(steady_clock::duration duration)
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// Pause between two cycles whose messages are due, short compared with the twin's delay.
+/// Shortest pause between two cycles, short compared with the twin's delay.
 steady_clock::duration shortestPause(Stamp input_delay)
 {
   constexpr int SHARE = 5;
@@ -48,7 +49,7 @@ steady_clock::duration shortestPause(Stamp input_delay)
                                             CYCLE_PERIOD, SHORT_PAUSE);
 }
 
-/// Maps the pages of the stack before the first cycle needs them.
+/// Touches the pages of the stack, so that they are in memory before the first cycle.
 __attribute__((noinline)) void touchStack()
 {
   std::array<volatile char, STACK_SIZE> stack;
@@ -118,7 +119,7 @@ void TwinLoop::run()
     wake_up = status_.lag < MAX_CATCH_UP ? std::max(wake_up + length, end) : end;
     if (wake_up > end)
     {
-      // Instants without output are due with the instant that ends the sleep.
+      // Instants without output are due at the end of the sleep.
       if (length > CYCLE_PERIOD)
       {
         released_ = std::max(released_, status_.clock + nanoseconds(wake_up - begin - CYCLE_PERIOD));
@@ -129,7 +130,7 @@ void TwinLoop::run()
   }
 }
 
-/// Time from one wake-up to the next: until the next output, in whole periods.
+/// Time from one wake-up to the next: the time until the next output, rounded to whole periods.
 steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
 {
   if (clock_kind_ == ClockKind::STEPPED || status_.state != LoopState::RUNNING)
@@ -143,13 +144,13 @@ steady_clock::duration TwinLoop::pause(Stamp next_awaited) const noexcept
 
 void TwinLoop::cycle(steady_clock::time_point begin) noexcept
 {
-  // Without a time there is nothing to restart, and inputs cannot be ordered.
+  // Before the first time of the clock the twin has not started, and inputs cannot be ordered.
   if (clock_() == 0)
   {
     resets_done_ = resets_requested_.load();
     return;
   }
-  // While a callback holds the inbox, the twin only advances; the next cycle handles the inputs.
+  // If a callback holds the inbox, this cycle only advances the twin, and the next cycle handles the inputs.
   if (!inbox_.use([this](Inputs& inputs) { heed(inputs); }))
   {
     const Stamp now = clock_();
@@ -163,7 +164,8 @@ void TwinLoop::cycle(steady_clock::time_point begin) noexcept
   twin_.show(status_);
 }
 
-/// Reads the clock after the inputs, so that inputs after a jump are not treated as earlier ones.
+/// Handles the inputs. The clock is read after the inputs have arrived, so that no input from after a jump of the clock
+/// counts as one from before.
 void TwinLoop::heed(Inputs& inputs) noexcept
 {
   if (readClock(clock_()))
@@ -183,14 +185,14 @@ void TwinLoop::heed(Inputs& inputs) noexcept
   waiting_ = inputs.size();
 }
 
-/// Whether the clock has jumped. The first time that the loop reads is no jump.
+/// Whether the clock has jumped. The first reading of the clock is not a jump.
 bool TwinLoop::isJump(Stamp now) const noexcept
 {
   const Stamp step = now - status_.clock;
   return status_.clock != 0 && (step < -CLOCK_JUMP_TOLERANCE || step > MAX_CLOCK_STEP);
 }
 
-/// @returns whether the clock has jumped.
+/// Updates the status with a new reading of the clock. @returns whether the clock has jumped.
 bool TwinLoop::readClock(Stamp now) noexcept
 {
   const bool jumped = isJump(now);
@@ -225,8 +227,8 @@ void TwinLoop::forgetInputs(Inputs& inputs) noexcept
   waiting_ = 0;
 }
 
-/// Stamps the inputs that arrived in this cycle. A stamp of zero, from before the first time, becomes now. An input
-/// with a stamp far from the clock is refused.
+/// Checks the stamps of the inputs that arrived in this cycle. A stamp of 0 was set before the clock had a time, and
+/// becomes the present time. An input with a stamp far from the clock is refused.
 void TwinLoop::stampInputs(Inputs& inputs) noexcept
 {
   const auto fresh = inputs.begin() + static_cast<std::ptrdiff_t>(waiting_);
@@ -242,8 +244,8 @@ void TwinLoop::stampInputs(Inputs& inputs) noexcept
   inputs.erase(kept_end, inputs.end());
 }
 
-/// Keeps only the last due input of each kind while the twin waits for its start. Repeated inputs must not fill the
-/// inbox, which has to accept the torque that starts the twin.
+/// Keeps only the last due input of each kind while the twin waits for its start. Otherwise repeated inputs could fill
+/// the inbox, and it could not accept the torque that starts the twin.
 void TwinLoop::thinOut(Inputs& inputs) noexcept
 {
   const Stamp due = limit();
@@ -271,7 +273,8 @@ bool TwinLoop::tryStart(Inputs& inputs) noexcept
     start(status_.clock, inputs);
     return true;
   }
-  // Several topics may bring the first input in any order. The earliest stamp counts once the clock has passed it.
+  // Several topics may bring the first inputs in any order. The twin starts at the earliest stamp, after the clock has
+  // passed this stamp.
   status_.state = LoopState::WAITING_FOR_INPUT;
   Stamp first = std::numeric_limits<Stamp>::max();
   for (const LiveInput& input : inputs)

@@ -19,8 +19,8 @@
 
 namespace hjt
 {
-/// Histogram of latencies in bins of constant relative width, eight in an octave, from a microsecond to 17 s. Its size
-/// is fixed: adding does not allocate and has a constant cost.
+/// Histogram of latencies from a microsecond to 17 s, with eight bins in each octave. Its size is fixed: adding a value
+/// does not allocate and takes a constant time.
 class LatencyHistogram
 {
 public:
@@ -30,7 +30,7 @@ public:
   static constexpr int END_OCTAVE = 34;    ///< all values beyond 2^34 ns are in the last bin
   static constexpr std::size_t BIN_COUNT = 1 + BINS_PER_OCTAVE * (END_OCTAVE - FIRST_OCTAVE);
 
-  /// Counts a latency. @param latency [ns]; a negative one counts as zero.
+  /// Counts a latency. @param latency [ns]; a negative latency counts as zero.
   void add(Stamp latency) noexcept
   {
     ++bins_[binOf(latency)];
@@ -41,8 +41,8 @@ public:
   std::uint64_t count() const noexcept { return count_; }
   Stamp largest() const noexcept { return largest_; }  ///< largest latency [ns]
 
-  /// Latency [ns] that a share of 0 ... 1 of the counted ones do not exceed, rounded up to the upper edge of its bin; 0
-  /// without any.
+  /// Quantile of the counted latencies [ns], rounded up to the upper edge of its bin; 0 without latencies. `share` is
+  /// 0 ... 1.
   Stamp quantile(double share) const noexcept
   {
     std::uint64_t counted = 0;
@@ -85,7 +85,7 @@ private:
   Stamp largest_{};
 };
 
-/// A small value that the loop publishes to other threads. The writer never waits: it skips a write during a read.
+/// A small value that the loop shows to other threads. The loop never waits: it skips a write while a thread reads.
 template <class Value>
 class TryLockValue
 {
@@ -112,7 +112,7 @@ private:
 
 enum class LoopState : std::uint8_t
 {
-  WAITING_FOR_CLOCK,  ///< no time has been read yet
+  WAITING_FOR_CLOCK,  ///< the clock has no time yet
   WAITING_FOR_INPUT,  ///< input.wait_for_first_input: the twin is at rest until a torque arrives
   RUNNING
 };
@@ -121,10 +121,10 @@ enum class LoopState : std::uint8_t
 struct LoopTiming
 {
   LatencyHistogram wake_up;          ///< delay of a cycle's beginning after the requested wake-up, in wall clock time
-  LatencyHistogram lateness;         ///< delay of the oldest instant of a cycle after it was due
+  LatencyHistogram lateness;         ///< time by which a cycle reached its oldest instant later than it was due
   std::uint64_t missed_deadlines{};  ///< number of cycles whose lateness exceeded realtime.deadline
   Stamp longest_cycle{};             ///< longest cycle in wall clock time [ns]
-  Stamp busy{};                      ///< sum of all cycles in wall clock time [ns]
+  Stamp busy{};                      ///< sum of the lengths of all cycles in wall clock time [ns]
   Stamp elapsed{};                   ///< elapsed wall clock time [ns]
   Stamp simulated{};                 ///< simulated time [ns]
 
@@ -143,23 +143,23 @@ private:
 enum class ClockKind : std::uint8_t
 {
   RUNNING,  ///< continuous clock: every instant is due at its own time
-  STEPPED   ///< clock driven by /clock: all instants of a step are due when the step has been read
+  STEPPED   ///< /clock: all instants up to a time on /clock are due when the loop has read this time
 };
 
 /// Status that the loop publishes once in a cycle.
 struct LoopStatus
 {
   LoopState state{};
-  Stamp clock{};        ///< last time that was read [ns]
-  Stamp twin_stamp{};   ///< simulated instant [ns]
+  Stamp clock{};        ///< last reading of the clock [ns]
+  Stamp twin_stamp{};   ///< instant that the twin has reached [ns]
   Stamp lag{};          ///< time by which the twin is behind the instant that it should have reached [ns]
   Stamp largest_lag{};  ///< largest lag since the last start or reset [ns]
   std::uint64_t cycles{};
-  std::uint64_t overruns{};     ///< cycles that worked longer than their period
-  std::uint64_t clock_jumps{};  ///< jumps of the clock in either direction
-  Stamp last_jump{};            ///< size of the last jump; > 0 forwards [ns]
-  std::uint64_t resets{};       ///< resets by request
-  std::uint64_t far_stamps{};   ///< inputs refused because their stamp differs from the clock by more than FAR_STAMP
+  std::uint64_t overruns{};     ///< number of cycles that worked longer than their period
+  std::uint64_t clock_jumps{};  ///< number of jumps of the clock, forwards and back
+  Stamp last_jump{};            ///< size of the clock's last jump; > 0 forwards [ns]
+  std::uint64_t resets{};       ///< number of resets that a user requested
+  std::uint64_t far_stamps{};   ///< number of inputs refused because their stamps differ from the clock by > FAR_STAMP
   bool command_seen{};          ///< a motor torque command has arrived since the last start or reset
   Stamp last_command{};         ///< latest stamp of a motor torque command [ns]
   JointOutputs outputs;
@@ -168,7 +168,8 @@ struct LoopStatus
   LoopTiming timing;
 };
 
-/// Interface of what a loop advances: one twin, or several that step together. No member may block or allocate.
+/// Interface between a loop and the twin, or the twins with common steps, that it advances. No member may block or
+/// allocate.
 class Advanced
 {
 public:
@@ -178,7 +179,7 @@ public:
   virtual void push(const LiveInput& input) noexcept = 0;  ///< as Twin::push
   virtual bool step(Stamp until) noexcept = 0;             ///< as Twin::step
   virtual Stamp stamp() const noexcept = 0;                ///< as Twin::stamp
-  /// called once in a cycle; sets the parts of the status that belong to one twin
+  /// Sets the members of the status that only the twin knows. The loop calls it once in a cycle.
   virtual void show(LoopStatus& status) noexcept = 0;
 
 protected:
@@ -187,7 +188,7 @@ protected:
   Advanced& operator=(const Advanced&) = default;
 };
 
-/// Adapter for one twin.
+/// Adapter that lets a loop advance one twin.
 class AdvancedTwin : public Advanced
 {
 public:
@@ -210,9 +211,9 @@ private:
 
 /// Advances the twin to the clock in a separate thread, without allocation, logging, or locks that are held for long.
 ///
-/// The twin stays `input.delay` behind the clock. It never skips time: after a forward step of up to MAX_CLOCK_STEP it
-/// catches up, with a bounded interval in each cycle so that inputs, requests and the stop are handled. A clock that
-/// jumps back or further forwards restarts the twin.
+/// The twin stays `input.delay` behind the clock and never skips time. After a forward step of the clock of up to
+/// MAX_CLOCK_STEP the twin catches up. Each cycle simulates a limited time, so that the loop still handles inputs and
+/// requests. If the clock jumps back, or forwards by more, the twin restarts.
 ///
 /// With a continuous clock the loop sleeps until the next output is due, at least a fifth of `input.delay` (one
 /// millisecond to SHORT_PAUSE) and at most MAX_PAUSE. The results do not depend on the sleep, because inputs act by
@@ -220,24 +221,25 @@ private:
 class TwinLoop
 {
 public:
-  using Clock = std::function<Stamp()>;     ///< time now [ns]; 0 if there is no time yet
+  using Clock = std::function<Stamp()>;     ///< returns the present time [ns]; 0 if the clock has no time yet
   using AfterStep = std::function<void()>;  ///< called at every simulated instant; must not block or allocate
   /// Called after each cycle with the instant that it reached. Returns the instant of the next output [ns]. It must not
   /// block or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// Largest difference of two readings of the clock [ns]. A larger one is a jump: another recording, or a suspended
-  /// machine.
+  /// Largest difference of successive readings of the clock that is not a jump [ns]. Another recording or a suspended
+  /// machine causes a jump.
   static constexpr Stamp MAX_CLOCK_STEP = 10'000'000'000;
 
-  /// Starts the thread. Without `after_cycle` every instant is an output. `parameters`: those of the twin, or of one of
-  /// several.
+  /// Starts the thread. Without `after_cycle` every instant has an output. `parameters`: those of the twin, or of one
+  /// of several twins.
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
            AfterStep after_step, AfterCycle after_cycle = {});
 
   ~TwinLoop();
 
-  /// Restarts the twin at the current instant and waits for it; thread-safe. @returns false if the loop did not answer.
+  /// Restarts the twin at the current instant and waits for the restart. Thread-safe. @returns false if the loop did
+  /// not answer.
   bool reset();
 
   LoopStatus status() const { return shown_status_.read(); }
@@ -274,7 +276,7 @@ private:
   AfterCycle after_cycle_;
   const Stamp input_delay_;
   const std::chrono::steady_clock::duration shortest_pause_;
-  const Stamp deadline_;     ///< largest lateness of an instant [ns]
+  const Stamp deadline_;     ///< realtime.deadline, the largest lateness of an instant [ns]
   const Stamp step_length_;  ///< length of a step [ns]
   const bool wait_for_first_input_;
   std::size_t waiting_{};  ///< number of inputs of earlier cycles that wait for the start

@@ -49,11 +49,11 @@ public:
   {
   }
 
-  /// The member of this name, made if missing; dots lead to members of members ("peak.torque").
+  /// The member of this name, which is added if it is missing. A dot in `path` leads to a member of a member
+  /// ("peak.torque").
   Json& operator[](const std::string& path);
 
   /// Calls `visitor` with the content: nullptr, bool, std::int64_t, double, text, std::vector<Json> or
-  /// std::vector<Member>.
   /// std::vector<Member>.
   template <class Visitor>
   decltype(auto) visit(const Visitor& visitor) const
@@ -62,7 +62,7 @@ public:
   }
 
   std::string dump() const;       ///< indented document
-  double number() const;          ///< value of a number or truth value; else NaN
+  double number() const;          ///< value of a number or truth value; NaN for any other content
   std::string shortText() const;  ///< text for people: numbers with seven digits, truth values as yes or no
 
 private:

@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// Members of a JSON object in the order of insertion. The JSON library has such a map from version 3.9 on, but Ubuntu
-/// 20.04 has 3.7.
+/// Members of a JSON object in the order of insertion. The JSON library has an ordered map from version 3.9 on, but
+/// Ubuntu 20.04 has version 3.7 of the library.
 template <class Key, class Value, class, class Allocator>
 class OrderedMembers : public std::list<std::pair<const Key, Value>, Allocator>
 {

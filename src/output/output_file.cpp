@@ -35,7 +35,7 @@ void requireWritable(const std::string& path, bool force, const std::string& inp
   }
   if (!input.empty() && fs::equivalent(path, input, error))
   {
-    throw InputError(path + " is the input file; give another name");
+    throw InputError(path + " is the input file; give another name for the output");
   }
   if (fs::is_directory(path, error))
   {
@@ -61,8 +61,8 @@ void prepareReport(const std::string& folder, const std::string& data, bool forc
   {
     if (!force && !entry.is_directory(error))
     {
-      throw InputError(folder + " already contains files, " + entry.path().filename().string() +
-                       " among them; give another directory, or --force to overwrite the files of a report");
+      throw InputError(folder + " already contains files, for example " + entry.path().filename().string() +
+                       "; give another directory, or --force to overwrite the files of a report");
     }
   }
 }
@@ -86,7 +86,7 @@ CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& co
   std::error_code error;
   const fs::file_status status = fs::status(path, error);  // after resolving links
   const bool is_stream = fs::exists(status) && (!fs::is_regular_file(status) || fs::equivalent(path, STDOUT, error));
-  const fs::path there = fs::canonical(path, error);  // empty for a new file
+  const fs::path there = fs::canonical(path, error);  // empty if the file does not exist yet
   target_ = is_stream || error ? path : there.string();
   written_ = is_stream ? target_ : makeFileBeside(target_);
   file_.reset(std::fopen(written_.c_str(), "w"));
@@ -110,7 +110,7 @@ void CsvWriter::writeRow(const std::vector<double>& values)
   for (std::size_t column = 0; column < values.size(); ++column)
   {
     Text& text = texts_[column];
-    // The shortest text that reads back as the same number. Values often equal those of the preceding row.
+    // Writes the shortest text that reads back as the same number. An unchanged value keeps its text of the row before.
     if (text.size == 0 || std::memcmp(&text.value, &values[column], sizeof(double)) != 0)
     {
       text.value = values[column];
@@ -140,7 +140,7 @@ void CsvWriter::require(bool written) const
     const int reason = errno;
     const bool is_part = has_rows_ && written_ != target_;
     throw InputError(path_ + " cannot be written: " + std::strerror(reason) +
-                     (is_part ? "; " + written_ + " contains the rows before" : ""));
+                     (is_part ? "; " + written_ + " contains the rows before the error" : ""));
   }
 }
 }  // namespace hjt

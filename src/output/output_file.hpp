@@ -10,20 +10,19 @@
 
 namespace hjt
 {
-/// @throws InputError if `path` is the input file, or exists and `force` is not given. An empty path, of an option that
-/// was
-/// not given, is accepted.
+/// Checks that a file may be written. @throws InputError if `path` is the input file, or if it exists and `force` is
+/// false. An empty path means that the option was not given, and is accepted.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
-/// Makes the directory of a report, for the file `data` and a page. @throws InputError if it cannot be made, or
-/// contains files and `force` is not given.
+/// Makes the directory of a report, for the file `data` and a page. @throws InputError if it cannot be made, or if it
+/// contains files and `force` is false.
 void prepareReport(const std::string& folder, const std::string& data, bool force);
 
 /// Flushes standard output. @throws InputError if not everything could be written.
 void finishStandardOutput();
 
-/// Writes a CSV file of numbers that read back exactly. The file is named `PATH.NUMBER.part` until `close` renames it;
-/// without `close` the rows stay there. A device, a pipe and standard output are written directly.
+/// Writes a CSV file of numbers that read back exactly. The file has the name `PATH.NUMBER.part` until `close` renames
+/// it. Without `close` it keeps this name. A device, a pipe and standard output are written directly.
 class CsvWriter
 {
 public:
@@ -39,20 +38,20 @@ public:
   void close();
 
 private:
-  /// @throws InputError with the reason in errno if something was not written.
+  /// @throws InputError with the reason in errno, if `written` is false.
   void require(bool written) const;
 
-  /// Last text of a column's number, with the separator after it.
+  /// Text of the last number of a column, with the separator after it.
   struct Text
   {
     double value;
     std::array<char, 32> digits;  // at most 24 digits, and the separator
-    std::size_t size{};           // zero: no text yet
+    std::size_t size{};           // length of the text; 0 before the first number
   };
 
   const std::string path_;
-  std::string target_;   // target after resolving links
-  std::string written_;  // path of the file that is written
+  std::string target_;   // final path, after resolving links
+  std::string written_;  // path of the file while it is written
   bool has_rows_{};
   std::vector<Text> texts_;
   std::vector<char> line_;

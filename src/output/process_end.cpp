@@ -74,10 +74,10 @@ void warnOf(const TwinCounters& counters)
   warn(counters.overloads, "steps had a torque at the joint beyond output.torque_limit");
   warn(counters.speed_limited, "steps were at motor.speed_limit, where the drive reduces its torque");
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");
-  warn(counters.step_cuts, "steps needed a shorter path to converge");
-  warn(counters.jumps, "steps had a tooth that jumped through a tip to another space");
+  warn(counters.step_cuts, "steps converged only after they were divided");
+  warn(counters.jumps, "steps had a tooth that jumped to another space of the circular spline");
   warn(counters.coarse_steps, "steps were too long for the joint's fastest natural mode; raise solver.rate");
-  warn(counters.solver_failures, "steps did not converge; the last converged state was kept");
+  warn(counters.solver_failures, "steps did not converge; the twin kept its last converged state");
 }
 
 int RunSummary::report(const Twin& twin, bool json) const
@@ -116,7 +116,7 @@ int reportWritten(const std::string& output, bool json)
   {
     return EXIT_DONE;
   }
-  std::cerr << "joint_twin: interrupted; " << output << " is readable up to here\n";
+  std::cerr << "joint_twin: interrupted; " << output << " is readable and contains everything up to the interrupt\n";
   return EXIT_BY_SIGNAL + interruptSignal();
 }
 }  // namespace hjt

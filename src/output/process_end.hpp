@@ -16,13 +16,13 @@ enum ExitCode : int
   EXIT_DONE = 0,
   EXIT_FAILED = 1,
   EXIT_USAGE = 2,
-  EXIT_DEPARTS = 3,     ///< a verdict has at least the level of the user's option
-  EXIT_NOT_JUDGED = 4,  ///< nothing could be judged, although the user's option requires a verdict
-  EXIT_STOPPED = 5,     ///< the arm has stopped itself
+  EXIT_DEPARTS = 3,     ///< the verdict is at least as bad as the level of --fail-on
+  EXIT_NOT_JUDGED = 4,  ///< no joint could be judged, or with `--fail-on not-judged` one joint could not
+  EXIT_STOPPED = 5,     ///< a protective stop ended the motion of the arm
   EXIT_BY_SIGNAL = 128  ///< plus the number of the signal
 };
 
-/// Signal that arrived within an InterruptScope, or 0.
+/// Number of the signal that arrived within an InterruptScope; 0 if none arrived.
 int interruptSignal();
 
 /// During its lifetime, SIGINT, SIGTERM and SIGHUP end loops that check `interruptSignal`, so that files are closed. A
@@ -53,10 +53,10 @@ private:
 /// Start of the simulated time without a recording: 2001-09-09 01:46:40 UTC, so that stamps are valid ROS times.
 constexpr Stamp SIMULATION_EPOCH = 1'000'000'000'000'000'000;
 
-/// Warns on stderr of a number of events, unless it is 0.
+/// Prints a warning on stderr: `count`, then the text `what`. Prints nothing if `count` is 0.
 void warn(std::uint64_t count, const std::string& what);
 
-/// Warns on stderr of all counted events of a run.
+/// Prints a warning on stderr for each kind of event that a run has counted.
 void warnOf(const TwinCounters& counters);
 
 /// Report on the end of a twin's run, for people and programs.
@@ -70,6 +70,6 @@ struct RunSummary
   int report(const Twin& twin, bool json) const;
 };
 
-/// Tells people the name of the written file and an interrupt, and returns the exit code.
+/// Prints the name of the written file, and whether an interrupt ended the run. @returns the exit code.
 int reportWritten(const std::string& output, bool json);
 }  // namespace hjt

@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Prints the progress of a long step to stderr: a bar on a terminal, otherwise a line every few seconds; nothing for a
-/// quick step.
+/// Prints the progress of a long step to stderr: a bar on a terminal, elsewhere a line every few seconds. Prints
+/// nothing for a quick step.
 class Progress
 {
 public:
@@ -19,7 +19,7 @@ public:
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done`: 0 ... 1. May be called at every step of a fast loop.
+  /// Updates the printed progress. `done`: finished share, 0 ... 1. May be called at every step of a fast loop.
   void update(double done);
 
 private:
@@ -32,22 +32,22 @@ private:
   const Clock::time_point start_{ Clock::now() };
   Clock::time_point next_;
   Clock::time_point last_look_{ start_ };
-  unsigned calls_{};  // calls since the last reading of the clock
+  unsigned calls_{};  // number of calls since the last reading of the clock
   unsigned calls_per_look_{ 1 };
   bool bar_shown_{};
 };
 
-/// A progress for the duration of a call: `result = analyse(..., showProgress("turning"));`
+/// Function that prints the progress of a call: `result = analyse(..., showProgress("turning"));`
 std::function<void(double)> showProgress(const std::string& what);
 
-/// Callbacks by which the caller follows and ends a long function. An exception of a callback ends the function at
-/// once.
+/// Callbacks by which a caller follows the progress of a long function, and ends the function. An exception of a
+/// callback ends the function at once.
 struct Watch
 {
   /// Called when a step with this name begins; returns the function that receives the step's progress, 0 ... 1.
   std::function<std::function<void(double)>(const std::string&)> progress{ [](const std::string&)
                                                                            { return [](double) {}; } };
-  /// Called at every row and between steps; true ends the function with closed files.
+  /// Called at every row and between steps. If it returns true, the function closes its files and ends.
   std::function<bool()> stopped{ [] { return false; } };
   /// Receives a note for the user: a sentence without full stop.
   std::function<void(const std::string&)> notice{ [](const std::string&) {} };
@@ -58,7 +58,7 @@ struct Stopped
 {
 };
 
-/// Response surfaces from the user's cache. Building them throws `Stopped` if the watch stops.
+/// Source of response surfaces with the user's cache. Building a surface throws `Stopped` if the watch stops.
 inline SurfaceSource surfaceSource(const Watch& watch)
 {
   const auto show = [update = watch.progress("building the response surface"), stopped = watch.stopped](double done)

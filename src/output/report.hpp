@@ -11,10 +11,10 @@
 
 namespace hjt
 {
-/// Text of a number for people: seven digits.
+/// Text of a number with seven digits, for people.
 std::string shortNumber(double value);
 
-/// Named values with units, printed one a line.
+/// A value with its name and unit, which is printed on a line of its own.
 struct NamedValue
 {
   std::string name;
@@ -36,9 +36,9 @@ void printTable(const std::vector<std::string>& headings, const std::vector<std:
 template <class Row>
 struct Column
 {
-  std::string key;                        ///< key in documents and files; empty: not there
+  std::string key;                        ///< key in documents and files; empty: the column is not in them
   std::function<Json(const Row&)> value;  ///< member of the row, or a function of it
-  std::string heading{};                  ///< heading for people, with the unit: "torque [N.m]"; empty: not shown
+  std::string heading{};                  ///< heading with the unit ("torque [N.m]"); empty: not shown to people
 };
 
 /// A table with named columns, for people, as a document or as a file.
@@ -113,8 +113,8 @@ private:
   CsvWriter csv_;
 };
 
-/// Writes all rows to a CSV file, unless the path is empty because the option was not given. @throws InputError if that
-/// fails.
+/// Writes all rows to a CSV file. An empty path means that the option was not given, and nothing is written. @throws
+/// InputError if the file cannot be written.
 template <class Row, class Rows>
 void writeTable(const std::string& path, const std::vector<Column<Row>>& columns, const Rows& rows)
 {
@@ -152,6 +152,6 @@ struct Report
 
 Json documentOf(const Report& report);
 
-/// Prints to stdout, as lines and tables for people or as one JSON document.
+/// Prints a report to stdout: for people as lines and tables, or as one JSON document.
 void printReport(bool json, const std::vector<ReportLine>& lines, const std::vector<ReportTable>& tables = {});
 }  // namespace hjt

@@ -76,7 +76,7 @@ class Compare(tool.ToolTest):
                 folder = "of_" + name
                 os.mkdir(self.path(folder))
                 self.write(os.path.join(folder, name), "precious")
-                self.fail_with(1, [f"already contains files, {name} among them", "--force"], "compare", "a.bag",
+                self.fail_with(1, [f"already contains files, for example {name};", "--force"], "compare", "a.bag",
                                *OPTIONS, "--report", folder)
                 self.assertEqual(tool.read_bytes(self.path(os.path.join(folder, name))), b"precious")
                 self.assertEqual(os.listdir(self.path(folder)), [name])
