@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The unit of a whole arm, in closed loop or with given motor torques.
+/// The FMI unit of a whole arm, in closed loop or with given motor torques.
 
 #include <algorithm>
 #include <cmath>
@@ -35,13 +35,14 @@ void takeSetPoint(const Values& values, std::vector<JointMotion>& joints)
   }
 }
 
-/// Time in a recording in whole nanoseconds [s].
+/// Time of a stamp in whole nanoseconds, as in a recording [s].
 double timeOf(Stamp stamp)
 {
   return toSeconds(stamp - EPOCH);
 }
 
-/// Instants of an arm with its controller are later than the importer's by MovingArm::SETTLING and the lead-in.
+/// Simulation of an arm. With its controller, the arm's instants are later than the importer's times by
+/// MovingArm::SETTLING and the lead-in.
 class ArmSimulation : public Simulation
 {
 public:
@@ -224,7 +225,7 @@ public:
       parts.emplace_back(variables_, first, prefixOf(arm.joints[i]));
       drives.push_back(parts.back().parameters(drives_[i], values));
     }
-    // A parameter, because importers set the inputs of the first step before the start too.
+    // start_q is a parameter, because importers set the inputs of the first step before the start.
     ArmSetPoint first{ timeOf(stampAt(start)), {} };
     for (const double angle : values[START_POSITION].numbers)
     {

@@ -21,27 +21,29 @@ void visitArm(Arm& arm, Fields& fields)
 {
   fields("gravity", "m/s^2", arm.gravity, ANY, "acceleration of gravity in the frame of the base");
   fields("payload_mass", "kg", arm.payload.mass, ANY, "mass of the payload at the tip");
-  fields("payload_centre", "m", arm.payload.centre, ANY, "centre of the payload's mass in the frame of the tip");
-  fields("state_rate", "Hz", arm.state_rate, ANY, "rate of the controller's states");
+  fields("payload_centre", "m", arm.payload.centre, ANY, "centre of mass of the payload in the frame of the tip");
+  fields("state_rate", "Hz", arm.state_rate, ANY, "rate at which the controller states its signals");
   for (std::size_t i = 0; i < arm.joints.size(); ++i)
   {
     const std::string place = "joints." + std::to_string(i) + '.';
     auto& joint = arm.joints[i];
     fields(place + "name", joint.short_name, "prefix of the joint's variables");
-    fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed; 0: no limit");
-    fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY, "largest feedback torque; 0: no limit");
+    fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed of the joint; 0: no limit");
+    fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY,
+           "largest torque of the feedback at the joint; 0: no limit");
     fields(place + "delay", "s", joint.delay, ANY, "delay of the joint's set points");
-    fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed per error of the angle");
-    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque per error of the speed");
-    fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed control");
-    fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "constant friction in the feedforward");
-    fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY, "friction by speed in the feedforward");
+    fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed of the joint / error of its angle");
+    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque at the joint / error of its speed");
+    fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed controller");
+    fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "Coulomb friction in the feedforward");
+    fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY,
+           "coefficient of viscous friction in the feedforward");
   }
   for (std::size_t i = 0; i < arm.links.size(); ++i)
   {
     const std::string place = "links." + std::to_string(i) + '.';
     auto& link = arm.links[i];
-    fields(place + "motion", "-", link.motion, "kind of the joint's motion");
+    fields(place + "motion", "-", link.motion, "kind of motion of the joint");
     fields(place + "axis", "-", link.axis, ANY, "axis of the joint in the frame of the link before");
     fields(place + "origin", "m", link.origin, ANY, "point of the joint's axis in the frame of the link before");
     fields(place + "position", "m", link.position, ANY,
@@ -108,7 +110,7 @@ struct Writer
   }
 
   std::string text;
-  std::string last;  // item of the list that is being written
+  std::string last;  // list item that the writer is in
 };
 
 std::size_t countOf(const ParameterMap& map, const std::string& list, const std::string& key)
@@ -143,16 +145,16 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
   };
   constexpr double WRENCH = 1000.0;  // limit of the node's ~wrench [N], [N.m]
   const std::vector<double> zeros(arm.joints.size(), 0.0);
-  add("target_q", "rad", "set points of the joints for the end of the step", zeros, ANGLES);
-  add("target_qd", "rad/s", "speeds of the joints at the end of the step", zeros, { -100.0, 100.0 });
-  add("target_qdd", "rad/s^2", "accelerations of the joints at the end of the step", zeros, { -1e6, 1e6 });
+  add("target_q", "rad", "angles of the joints' set points at the end of the step", zeros, ANGLES);
+  add("target_qd", "rad/s", "speeds of the joints' set points at the end of the step", zeros, { -100.0, 100.0 });
+  add("target_qdd", "rad/s^2", "accelerations of the joints' set points at the end of the step", zeros, { -1e6, 1e6 });
   add("wrench_force", "N", "external force on the tip, in the frame of the base", { 0.0, 0.0, 0.0 },
       { -WRENCH, WRENCH });
   add("wrench_moment", "N.m", "external moment on the tip, in the frame of the base", { 0.0, 0.0, 0.0 },
       { -WRENCH, WRENCH });
-  add("payload_mass", "kg", "mass of the payload at the tip, known to the controller", { arm.payload.mass },
+  add("payload_mass", "kg", "mass of the payload at the tip; the controller knows it", { arm.payload.mass },
       hjt::PAYLOAD_MASS);
-  add("payload_centre", "m", "centre of the payload's mass, in the frame of the tip",
+  add("payload_centre", "m", "centre of mass of the payload in the frame of the tip",
       { arm.payload.centre.begin(), arm.payload.centre.end() }, { -100.0, 100.0 });
 }
 
@@ -168,9 +170,9 @@ void addArmOutputs(std::size_t joints, std::vector<FmuVariable>& all)
   }
   add("tool_orientation", "-", "true orientation of the tip in the frame of the base, unit quaternion x, y, z, w", 4,
       Type::FLOAT64);
-  add("tool_error", "m", "distance of the tool from its position by the set point", 1, Type::FLOAT64);
-  add("protective_stop", "-",
-      "0: no stop; otherwise number of the joint for which the controller stopped the arm, base = 1", 1, Type::INT32);
+  add("tool_error", "m", "distance of the tool from its position at the set points", 1, Type::FLOAT64);
+  add("protective_stop", "-", "0: no protective stop; otherwise number of the joint that caused it, base = 1", 1,
+      Type::INT32);
 }
 
 void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
@@ -184,21 +186,22 @@ void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
   add("start_q", "rad", "angles of the joints at the start", std::vector<double>(arm.joints.size(), 0.0), ANGLES);
   all.push_back({ "controller.on",
                   "-",
-                  "follows the set points; false: motor_torque of the joints goes to the motors",
+                  "true: the arm follows the set points; false: the motors get motor_torque of the joints",
                   Causality::PARAMETER,
                   Type::BOOLEAN,
                   { { 1.0 } } });
   add("gravity", "m/s^2", "acceleration of gravity in the frame of the base",
       { arm.gravity.begin(), arm.gravity.end() }, { -100.0, 100.0 });
-  add("controller.position", "1/s", "set speed per error of the angle", gainsOf(arm, &JointGains::position),
+  add("controller.position", "1/s", "wanted speed of a joint / error of its angle", gainsOf(arm, &JointGains::position),
       { 0.0, 1e3 });
-  add("controller.speed", "N.m.s/rad", "torque per error of the speed", gainsOf(arm, &JointGains::speed), { 0.0, 1e6 });
-  add("controller.integral_time", "s", "integral time of the speed control", gainsOf(arm, &JointGains::integral_time),
-      { 1e-3, 1e6 });
-  add("controller.coulomb", "N.m", "constant friction in the feedforward", gainsOf(arm, &JointGains::coulomb),
+  add("controller.speed", "N.m.s/rad", "torque at a joint / error of its speed", gainsOf(arm, &JointGains::speed),
+      { 0.0, 1e6 });
+  add("controller.integral_time", "s", "integral time of the speed controller",
+      gainsOf(arm, &JointGains::integral_time), { 1e-3, 1e6 });
+  add("controller.coulomb", "N.m", "Coulomb friction in the feedforward", gainsOf(arm, &JointGains::coulomb),
       { -1e4, 1e4 });
-  add("controller.viscous", "N.m.s/rad", "friction by speed in the feedforward", gainsOf(arm, &JointGains::viscous),
-      { -1e4, 1e4 });
+  add("controller.viscous", "N.m.s/rad", "coefficient of viscous friction in the feedforward",
+      gainsOf(arm, &JointGains::viscous), { -1e4, 1e4 });
 }
 }  // namespace
 

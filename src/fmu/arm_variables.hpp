@@ -9,17 +9,17 @@
 
 namespace hjt::fmu
 {
-constexpr const char* ARM_FILE = "arm.yaml";  ///< file in the resources, beside a directory for each joint's drive
+constexpr const char* ARM_FILE = "arm.yaml";  ///< file in the resources, which also have a directory for each drive
 
-/// Text of an arm's description for the closed loop: links as numbers, gravity, payload, limits and gains. The joints
-/// must have gains.
+/// Text for the resources of a unit, with what the closed loop of an arm needs: links as numbers, gravity, payload,
+/// limits and gains. The joints must have gains.
 std::string armResource(const ArmDescription& arm);
 
-/// Reads such a text from a file. @throws ParameterError.
+/// Reads a text of `armResource` from a file. @throws ParameterError.
 ArmDescription readArmResource(const std::string& path);
 
-/// Variables of an arm after the time, by value reference, followed by those of its drives (DriveReference), base
-/// first. Arrays have a value for each joint, or x, y, z, unless stated otherwise.
+/// Value references of an arm's variables. The time comes before them. The variables of the drives (DriveReference)
+/// come after them, base first. Arrays have a value for each joint, or x, y, z, unless stated otherwise.
 enum ArmReference : unsigned
 {
   SET_POSITION = TIME + 1,
@@ -47,6 +47,6 @@ enum ArmReference : unsigned
 /// Prefix of the names of a joint's variables.
 std::string prefixOf(const ArmJoint& joint);
 
-/// All variables of a unit for an arm, whose joints must have gains.
+/// All variables of a unit for an arm. The joints of the arm must have gains.
 std::vector<FmuVariable> armVariables(const ArmDescription& arm, const std::vector<Parameters>& drives);
 }  // namespace hjt::fmu

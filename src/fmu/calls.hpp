@@ -12,11 +12,11 @@
 #include "fmu/fmi.hpp"
 #include "fmu/instance.hpp"
 
-/// Common functions of both versions of FMI. Exceptions of an instance become an error status and a message; nothing is
-/// printed.
+/// Functions that FMI 2.0 and 3.0 have in common. An exception of an instance becomes an error status and a message in
+/// the importer's log. Nothing is printed.
 namespace hjt::fmu
 {
-/// Sets the default floating-point environment instead of the importer's, which may trap or flush denormals.
+/// Sets the default floating-point environment during its lifetime. The importer's may trap, or flush denormal numbers.
 class UsualArithmetic
 {
 public:
@@ -33,7 +33,8 @@ private:
   std::fenv_t importers_{};
 };
 
-/// Calls `call` with the instance and returns a status; false is a warning, a null instance an error.
+/// Calls `call` with the instance. @returns a status: a warning if `call` returns false, an error if the instance is
+/// null or `call` throws.
 template <class Call>
 Status guarded(Instance* instance, const Call& call) noexcept
 {
@@ -60,7 +61,7 @@ Status guarded(Instance* instance, const Call& call) noexcept
   }
   catch (...)
   {
-    instance->log(Status::ERROR, "failed without a reason");
+    instance->log(Status::ERROR, "the call failed for an unknown reason");
   }
   return Status::ERROR;
 }
@@ -70,7 +71,7 @@ inline Status refuse(Instance* instance, const char* name) noexcept
   return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + " is not supported by this unit"); });
 }
 
-/// A new instance, or null and a message, independent of the logging. `check` throws if the call is invalid.
+/// A new instance. If this fails: null, and a message even if logging is off. `check` throws if the call is invalid.
 template <class Check>
 Instance* instantiated(const char* token, const char* resources, bool logs, const Log& log, const Check& check) noexcept
 {
@@ -94,13 +95,13 @@ Instance* instantiated(const char* token, const char* resources, bool logs, cons
       log(Status::ERROR, LOG_CATEGORIES[1], error.what());
     }
   }
-  catch (...)  // no exception may leave the unit
+  catch (...)  // an exception must not leave the unit
   {
   }
   return nullptr;
 }
 
-/// Escapes letters that have a meaning in an importer's log.
+/// Doubles those `letters` in a text that have a meaning in an importer's log.
 inline std::string doubled(const std::string& text, const char* letters)
 {
   std::string found;
@@ -247,7 +248,7 @@ inline Status serialise(Instance* instance, const Instance::State* state, unsign
                    const std::string found = self.serialised(*state);
                    if (size != found.size())
                    {
-                     throw CallError("size = " + std::to_string(size) + " for a state of " +
+                     throw CallError("size = " + std::to_string(size) + " [bytes], but the state has " +
                                      std::to_string(found.size()) + " bytes");
                    }
                    std::memcpy(bytes, found.data(), size);
@@ -266,13 +267,13 @@ inline Status deserialise(Instance* instance, const unsigned char* bytes, std::s
                  });
 }
 
-/// @returns false if the last converged state is kept.
+/// Does a step of the importer. @returns false if the instance had to keep its last converged state.
 inline bool doStep(Instance& instance, double at, double length)
 {
   const bool converged = instance.step(at, length);
   if (!converged)
   {
-    instance.log(Status::WARNING, "a step had no equilibrium; the last converged state is kept");
+    instance.log(Status::WARNING, "a step had no equilibrium; the unit keeps its last converged state");
   }
   return converged;
 }

@@ -123,7 +123,7 @@ void DrivePart::giveInputs(Stamp instant, const Values& values, Twin& twin)
   }
 }
 
-/// Computes indicators and assessment from the first time one of them is read.
+/// Reads an output. From the first reading of an indicator or of the assessment on, the twin computes them.
 bool DrivePart::read(std::size_t reference, Twin& twin, Values& values)
 {
   if ((*variables_)[reference].is_array)
@@ -144,7 +144,7 @@ bool DrivePart::marks(std::size_t reference, const Twin& twin) const
   return (*variables_)[reference].is_array ? !teeth_known_ : scalar(reference).watches && !twin.watchesSignals();
 }
 
-/// Reads values of teeth. On the response surface this solves a separate ring.
+/// Reads the outputs of the teeth. On the response surface the twin solves a separate ring for them.
 bool DrivePart::readTeeth(Twin& twin, Values& values)
 {
   if (teeth_known_)

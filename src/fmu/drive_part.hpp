@@ -10,22 +10,22 @@
 
 namespace hjt::fmu
 {
-/// Variables of a drive in a unit, and the inputs that its twin has got.
+/// Part of a unit that belongs to one drive: its variables, and the inputs that its twin has received.
 class DrivePart
 {
 public:
-  /// The drive whose variables begin at `first` with this prefix. `variables` must outlive this object.
+  /// Part of the drive whose variables begin at `first` and have this prefix. `variables` must outlive this object.
   DrivePart(const std::vector<FmuVariable>& variables, std::size_t first, const std::string& prefix);
 
-  std::size_t end() const noexcept { return end_; }  ///< value reference after the drive's last one
+  std::size_t end() const noexcept { return end_; }  ///< value reference after the last one of the drive
 
-  /// `base` with the set values, and with the set faults from the start. @throws ParameterError.
+  /// `base`, changed by the parameters and faults that the importer has set. @throws ParameterError.
   Parameters parameters(const Parameters& base, const Values& values) const;
 
-  /// Sets the inputs of the first step: the load is ignored, the brake is set.
+  /// Prepares the inputs for the first step: the twin has received all except the load. `brake_engaged`: initial brake.
   void begin(const Values& values, bool brake_engaged);
 
-  /// Commands the inputs that have changed, except the motor's torque, from this instant.
+  /// Gives the twin those inputs that have changed, from `instant` on, except the motor torque.
   void giveInputs(Stamp instant, const Values& values, Twin& twin);
   double motorTorque(const Values& values) const noexcept { return values[first_ + MOTOR_TORQUE].numbers[0]; }
 
@@ -42,7 +42,7 @@ private:
   std::size_t first_;
   std::size_t end_;
   std::size_t prefix_size_;
-  std::vector<double> given_;  // inputs that the twin has got
+  std::vector<double> given_;  // inputs that the twin has received
   bool teeth_known_{};
   std::optional<ToothForces> forces_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The unit of one drive.
+/// The FMI unit of one drive.
 
 #include <utility>
 
@@ -29,7 +29,7 @@ public:
     }
     while (twin_.stamp() <= last)
     {
-      // The command is repeated at every step, so that the twin's input does not time out.
+      // The torque is commanded at every step, so that it does not time out.
       twin_.commandMotorTorque(twin_.stamp(), part_.motorTorque(values));
       twin_.step(until);
     }

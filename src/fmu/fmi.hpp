@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-/// Common part of FMI's C interfaces 2.0 and 3.0 for co-simulation; fmi2.cpp and fmi3.cpp have the functions.
+/// Common part of the C interfaces of FMI 2.0 and 3.0 for co-simulation. fmi2.cpp and fmi3.cpp have the functions.
 namespace hjt::fmu
 {
 enum class Version
@@ -24,13 +24,13 @@ enum class Status : int
   FATAL
 };
 
-/// Categories of the log: information and warnings, errors.
+/// Categories of messages in the log: first information and warnings, then errors.
 constexpr const char* LOG_CATEGORIES[]{ "logStatusWarning", "logStatusError" };
 
-/// Index of a variable in the unit's list. FMI 2.0 has no arrays, so its reference also contains the element.
+/// Index of a variable in the unit's list. FMI 2.0 has no arrays, so a reference of FMI 2.0 also contains the element.
 using ValueReference = std::uint32_t;
 constexpr unsigned ELEMENT_SHIFT = 16;  ///< reference = element << ELEMENT_SHIFT | variable
 
-/// Log of an importer; empty without one.
+/// Function that writes to the log of an importer; empty if the importer has no log.
 using Log = std::function<void(Status status, const char* category, const std::string& message)>;
 }  // namespace hjt::fmu

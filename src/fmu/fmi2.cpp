@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// C functions of FMI 2.0 for co-simulation; the standard gives names, arguments and order of calls. Truth values are
-/// integers, and each element of an array is a variable.
+/// C functions of FMI 2.0 for co-simulation. The standard gives names, arguments and order of calls. In FMI 2.0, truth
+/// values are integers, and each element of an array is a variable.
 
 #include <optional>
 
@@ -19,7 +19,7 @@ struct Callbacks
   void* environment;
 };
 
-/// A message is a format string, in which `#` begins a value reference.
+/// Log for an instance. FMI 2.0 takes a message as a format string, in which `#` begins a value reference.
 Log logOf(const Callbacks* callbacks, const char* name)
 {
   if (callbacks == nullptr || callbacks->log == nullptr || name == nullptr)
@@ -63,7 +63,7 @@ extern "C"
                           require(name, "instanceName");
                           if (type != CO_SIMULATION)
                           {
-                            throw CallError("fmuType: this unit is for co-simulation");
+                            throw CallError("fmuType must be co-simulation, which this unit is for");
                           }
                         });
   }
@@ -174,7 +174,7 @@ extern "C"
                    });
   }
 
-  // Functions that this unit does not support; they ignore their arguments.
+  // Functions that this unit does not support. They ignore their arguments and return an error.
 #define HJT_REFUSED(name)           \
   Status name(Instance* instance)   \
   {                                 \

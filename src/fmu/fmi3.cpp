@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// C functions of FMI 3.0 for co-simulation; the standard gives names, arguments and order of calls.
+/// C functions of FMI 3.0 for co-simulation. The standard gives names, arguments and order of calls.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@ namespace
 {
 using LogMessage = void (*)(void* environment, Status status, const char* category, const char* message);
 
-/// In a message `#` would begin a value reference.
+/// Log for an instance. It doubles each `#` of a message, because `#` would begin a value reference.
 Log logOf(LogMessage log, void* environment)
 {
   if (log == nullptr)
@@ -169,7 +169,7 @@ extern "C"
                    {
                      for (bool* flag : { event_needed, terminate, early_return })
                      {
-                       require(flag, "a result of fmi3DoStep");
+                       require(flag, "a result argument of fmi3DoStep");
                        *flag = false;
                      }
                      require(last_time, "lastSuccessfulTime");
@@ -180,7 +180,7 @@ extern "C"
                    });
   }
 
-  // Functions that this unit does not support; they ignore their arguments.
+  // Functions that this unit does not support. They ignore their arguments and return an error.
 #define HJT_REFUSED(name)           \
   Status name(Instance* instance)   \
   {                                 \

@@ -27,14 +27,14 @@ struct UnitDescription
 {
   std::string name;
   std::string meaning;
-  std::string library;  ///< name in the unit, without its extension
+  std::string library;  ///< name of the library in the unit, without its extension
   std::string token;    ///< see instantiationToken
-  double rate{};        ///< rate of the unit's own steps [Hz]
-  double step{};        ///< default step of an importer [s]
+  double rate{};        ///< rate of the steps inside the unit [Hz]
+  double step{};        ///< step that the unit suggests to an importer [s]
   std::vector<FmuVariable> variables;
 };
 
-/// Units as exponents of the base units kg, m, s, A, K, rad; FMI needs no base unit for the others.
+/// A unit as exponents of the base units kg, m, s, A, K, rad. FMI needs no exponents for other units than those below.
 struct UnitRow
 {
   const char* name;
@@ -93,7 +93,7 @@ std::string unitDefinition(const std::string& unit)
   return text + (row->offset != 0.0 ? attribute("offset", numberText(row->offset)) : "") + "/></Unit>\n";
 }
 
-/// Attribute of a bound in the variable's type; empty without a bound.
+/// Attribute for a bound of the variable, written as its type requires; empty if it has no bound.
 std::string bound(const char* name, const FmuVariable& variable, double value)
 {
   const bool open = value <= -std::numeric_limits<double>::max() || value >= std::numeric_limits<double>::max();
@@ -113,7 +113,7 @@ std::string startText(const FmuVariable& variable)
                 });
 }
 
-/// Attributes of a variable in both versions.
+/// Attributes that a variable has in FMI 2.0 and in FMI 3.0.
 std::string generalAttributes(const FmuVariable& variable, std::size_t reference)
 {
   constexpr std::array CAUSALITIES{ "independent", "input", "output", "parameter" };
@@ -132,7 +132,7 @@ bool starts(const FmuVariable& variable)
   return variable.causality == Causality::INPUT || variable.causality == Causality::PARAMETER;
 }
 
-/// Attributes of a variable's values, except for texts.
+/// Attributes of a variable's values: unit, bounds and start value (but not the start value of a text).
 std::string valueAttributes(const FmuVariable& variable)
 {
   std::string text = variable.type == Type::FLOAT64 && variable.unit != "-" ? attribute("unit", variable.unit) : "";
@@ -170,7 +170,7 @@ struct Referred
   std::size_t reference;
 };
 
-/// The variables in a version's declaration: FMI 2.0 has a scalar for each element of an array.
+/// The variables as a version of FMI declares them: FMI 2.0 has a scalar for each element of an array.
 std::vector<Referred> referred(const std::vector<FmuVariable>& all, Version version)
 {
   std::vector<Referred> found;
@@ -210,7 +210,7 @@ std::string modelDescription(const UnitDescription& unit, Version version)
     }
     if (variable.causality == Causality::OUTPUT)
     {
-      // After a step an output does not depend on later inputs.
+      // An output depends on no input, because inputs act only in the next step.
       const std::string which =
           is_3 ? attribute("valueReference", std::to_string(reference)) : attribute("index", std::to_string(number));
       outputs += std::string(is_3 ? "    <Output" : "    <Unknown") + which + attribute("dependencies", "") + "/>\n";
@@ -239,23 +239,23 @@ std::string modelDescription(const UnitDescription& unit, Version version)
          "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 
-/// A ZIP archive with uncompressed files of less than 4 GB (PKWARE's APPNOTE, ISO/IEC 21320-1).
+/// A ZIP archive of uncompressed files, smaller than 4 GB (PKWARE's APPNOTE, ISO/IEC 21320-1).
 class Zip
 {
 public:
-  /// `name`: path with / between directories.
+  /// Adds a file. `name`: path with / between directories.
   void add(const std::string& name, const std::string& bytes)
   {
     const auto offset = static_cast<std::uint32_t>(files_.size());
     const auto size = static_cast<std::uint32_t>(bytes.size());
-    // Version 1.0, no flags, uncompressed; 1980-01-01 00:00.
+    // These fields say: version 1.0, no flags, uncompressed, time 1980-01-01 00:00.
     std::string common;
     append(common,
            { { 10, 2 }, { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0x21, 2 }, { crc(bytes), 4 }, { size, 4 }, { size, 4 } });
     append(common, { { static_cast<std::uint32_t>(name.size()), 2 }, { 0, 2 } });
     append(files_, { { 0x04034b50, 4 } });
     files_ += common + name + bytes;
-    // Made on Unix by version 2.0; readable and executable for all.
+    // These fields say: made on Unix by version 2.0, readable and executable for all users.
     append(directory_, { { 0x02014b50, 4 }, { 0x0314, 2 } });
     directory_ += common;
     append(directory_, { { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0100755u << 16, 4 }, { offset, 4 } });
@@ -324,7 +324,8 @@ public:
     texts_ += text;
   }
 
-  /// Adds a drive with the files that its parameters name. @returns the parameters as the unit has them.
+  /// Adds a drive with the files that its parameters name. @returns the parameters with the names that these files have
+  /// in the unit.
   Parameters addDrive(const std::string& folder, Parameters parameters)
   {
     carry(folder, parameters.indicators.signatures, "signatures.yaml");
@@ -352,8 +353,8 @@ private:
   std::string texts_;
 };
 
-/// Adds the unit's library and the libraries that it loads, with licences from /usr/share/doc/libNAME-VERSION/copyright
-/// (Debian).
+/// Adds to the archive the unit's library and the libraries that it loads, with their licences, which Debian has in
+/// /usr/share/doc/libNAME-VERSION/copyright.
 void addLibraries(const UnitLibraries& libraries, const std::string& name, Version version, Zip& zip)
 {
 #ifdef __aarch64__
@@ -395,7 +396,7 @@ std::string driveFmu(const Parameters& parameters, const UnitLibraries& librarie
   Zip zip;
   Resources resources(zip);
   const Parameters carried = resources.addDrive("", parameters);
-  const UnitDescription unit{ carried.joint.name,     "Tooth-level twin of a robot joint's harmonic drive",
+  const UnitDescription unit{ carried.joint.name,     "Twin of a robot joint's harmonic drive, with all its teeth",
                               "harmonic_joint_twin",  resources.token(),
                               carried.solver.rate,    0.001,
                               driveVariables(carried) };
@@ -419,7 +420,7 @@ std::string armFmu(const std::string& name, const ArmDescription& arm, const std
     carried.push_back(resources.addDrive(arm.joints[i].short_name + '/', drives[i]));
   }
   const UnitDescription unit{ name,
-                              "Tooth-level twins of all drives of a robot arm, its links and its controller",
+                              "Twins of all drives of a robot arm, with its links and its controller",
                               "harmonic_joint_twin_arm",
                               resources.token(),
                               drives.front().solver.rate,

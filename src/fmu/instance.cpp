@@ -16,7 +16,7 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Directory from a path (FMI 3.0) or a URI (FMI 2.0); importers may give either.
+/// Path of the directory of the resources. FMI 3.0 prescribes a path and FMI 2.0 a URI, but importers give either.
 std::string folderOf(std::string resources)
 {
   if (resources.rfind("file:", 0) == 0)
@@ -41,7 +41,7 @@ std::size_t categoryOf(Status status) noexcept
   return status == Status::ERROR ? 1 : 0;
 }
 
-constexpr double NO_STOP = std::numeric_limits<double>::infinity();  // [s]
+constexpr double NO_STOP = std::numeric_limits<double>::infinity();  // stop time if there is none [s]
 
 std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
 {
@@ -160,7 +160,7 @@ Instance::Elements Instance::elements(Type type, const References& of, std::size
   }
   if (variables[variable].type != type)
   {
-    throw CallError(variables[variable].name + " has another type than the function");
+    throw CallError(variables[variable].name + " does not have the type that the function reads or writes");
   }
   return { variable, first, is_element ? first + 1 : size };
 }
@@ -175,7 +175,8 @@ void Instance::requireCount(Type type, const References& of) const
   }
   if (of.values != expected)
   {
-    throw CallError(std::to_string(of.values) + " values for variables that have " + std::to_string(expected));
+    throw CallError(std::to_string(of.values) + " values for variables that have " + std::to_string(expected) +
+                    " elements");
   }
 }
 
@@ -198,7 +199,7 @@ void Instance::check(const FmuVariable& variable, std::size_t element, double va
   }
 }
 
-/// Checks all numbers before it sets the first one.
+/// Sets numbers. The function checks all numbers before it sets the first one.
 void Instance::setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number)
 {
   requireCount(type, of);
@@ -250,7 +251,8 @@ void Instance::setTexts(const References& of, const char* const* texts)
   changed(differs);
 }
 
-/// Before the start, other values need another twin; later inputs act with the next step.
+/// Must be called after values were set. Before the start, values that differ need a new simulation. Later inputs act
+/// with the next step.
 void Instance::changed(bool differs)
 {
   if (differs && state_.mode != Mode::STEP)
@@ -259,7 +261,7 @@ void Instance::changed(bool differs)
   }
 }
 
-/// Updates a value. @returns false if it is that of an earlier instant.
+/// Updates the value of a variable. @returns false if the value stays that of an earlier instant.
 bool Instance::update(std::size_t reference)
 {
   const FmuVariable& asked = unit_->variables()[reference];
@@ -277,7 +279,8 @@ bool Instance::update(std::size_t reference)
     }
     if (!state_.simulation->read(reference, state_.values))
     {
-      log(Status::WARNING, asked.name + ": no equilibrium of all teeth at " + numberText(state_.time) + " [s]");
+      log(Status::WARNING, asked.name + ": the solver found no equilibrium of all teeth at " + numberText(state_.time) +
+                               " [s]; the value is that of an earlier instant");
       return false;
     }
   }
@@ -311,7 +314,8 @@ bool Instance::step(double at, double length)
   };
   if (!(std::abs(at - state_.time) <= tolerance))
   {
-    throw CallError(asked() + "the instance is at " + numberText(state_.time) + " [s]");
+    throw CallError(asked() + "a step must begin at the present time of the instance, " + numberText(state_.time) +
+                    " [s]");
   }
   if (!(length > 0.0) || !(end <= LARGEST_TIME))
   {
@@ -319,7 +323,8 @@ bool Instance::step(double at, double length)
   }
   if (state_.stop && end > *state_.stop + tolerance)
   {
-    throw CallError(asked() + "the stop time is " + numberText(*state_.stop) + " [s]");
+    throw CallError(asked() + "the step would end after the stop time; the stop time is " + numberText(*state_.stop) +
+                    " [s]");
   }
   state_.journal.step(state_.values, end);
   const bool converged = state_.simulation->step(state_.values, end);
@@ -327,7 +332,7 @@ bool Instance::step(double at, double length)
   return converged;
 }
 
-/// Includes the outputs, because one that cannot be read has the value of an earlier instant.
+/// The bytes contain the outputs too, because an output that cannot be computed has the value of an earlier instant.
 std::string Instance::serialised(const State& state) const
 {
   std::string body;

@@ -23,7 +23,7 @@ struct CallError : std::runtime_error
   using std::runtime_error::runtime_error;
 };
 
-/// The variables of a call, and the number of values for them.
+/// The variables that a call names, and the number of values that the call has for them.
 struct References
 {
   const ValueReference* references;
@@ -41,8 +41,8 @@ enum class Mode
   TERMINATED
 };
 
-/// An instance behind the functions of FMI: its values by reference, its mode and its simulation. The simulation is
-/// made at the end of the initialisation, or when an output is read before. Every function throws CallError, and
+/// An instance of a unit, which the functions of FMI use: its values, its mode and its simulation. The simulation is
+/// made at the end of the initialisation, or when an output is read before. Every function throws CallError, and also
 /// ParameterError if the parameters are invalid for a twin.
 class Instance
 {
@@ -50,10 +50,10 @@ public:
   /// `resources`: directory of the unit's resources. @throws InputError.
   Instance(const std::string& resources, const std::string& token, bool logs, Log log);
 
-  /// Sends a message to the user's log, if enabled. `status`: status of the call, or OK for information.
+  /// Sends a message to the importer's log, if logging is on. `status`: status of the call, or OK for information.
   void log(Status status, const std::string& message) const noexcept;
 
-  /// On: only these categories, or all if none is given. Off: all.
+  /// Switches the logging of `categories` on. Without `on`: switches all logging off. No category means all categories.
   void setLogging(bool on, std::size_t count, const char* const* categories);
 
   void setUp(double start, std::optional<double> stop);
@@ -62,19 +62,19 @@ public:
   void terminate();
   void reset();
 
-  /// Gets values of one type; an array's values are consecutive. @returns false if some are those of an earlier
-  /// instant.
+  /// Passes the values of variables of one type to `put`. Values of an array are consecutive. @returns false if some
+  /// values are those of an earlier instant.
   template <class Put>
   bool get(Type type, const References& of, const Put& put);
   void setNumbers(Type type, const References& of, const std::function<double(std::size_t)>& number);
   void setTexts(const References& of, const char* const* texts);
 
-  /// Steps from `at` by `length` [s]. @returns false if a step had no equilibrium and the last converged state was
-  /// kept.
+  /// Steps from time `at` by `length` [s]. @returns false if a step had no equilibrium, so that the twin kept its last
+  /// converged state.
   bool step(double at, double length);
   double time() const noexcept { return state_.time; }  ///< present time [s]
 
-  /// Data that determine the result of `step`.
+  /// All data that determine the results of later steps.
   struct State
   {
     State() = default;
@@ -96,13 +96,14 @@ public:
   const State& state() const noexcept { return state_; }
   void takeUp(const State& state) { state_ = state; }
 
-  /// State as bytes, also for another process with this unit. Damage is detected, forgery is not. @throws InputError.
+  /// A state as bytes, which another process with this unit can also read. The reader detects damage, but not forgery.
+  /// @throws InputError.
   std::string serialised(const State& state) const;
-  /// State from bytes; repeats everything since its start. @throws InputError.
+  /// A state from bytes. The function repeats the simulation from its start. @throws InputError.
   std::unique_ptr<State> deserialised(std::string_view bytes) const;
 
 private:
-  /// Elements of a variable that a reference denotes.
+  /// Elements `begin` to `end` of a variable, which a reference denotes.
   struct Elements
   {
     std::size_t variable;

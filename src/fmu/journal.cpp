@@ -21,7 +21,7 @@ void requireJournal(bool condition)
 {
   if (!condition)
   {
-    throw InputError("a serialised state has a journal that this unit did not write");
+    throw InputError("a serialised state contains a journal that was not written by this unit");
   }
 }
 

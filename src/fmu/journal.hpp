@@ -15,7 +15,7 @@
 
 namespace hjt::fmu
 {
-/// Appends a number, but no truth value, in the format of this machine.
+/// Appends the bytes of a number in the format of this machine. Truth values are excluded.
 template <class Number>
 void putNumber(std::string& bytes, Number number)
 {
@@ -31,7 +31,7 @@ inline void putText(std::string& bytes, std::string_view text)
   bytes.append(text);
 }
 
-/// Reads from the front of bytes. @throws InputError if too few are left.
+/// Reads numbers from the front of a text of bytes. Functions throw InputError if too few bytes are left.
 class ByteReader
 {
 public:
@@ -63,8 +63,8 @@ private:
   std::string_view left_;
 };
 
-/// Everything that a simulation got since its start: inputs, steps, and reads with effect. A repetition gives equal
-/// bits and takes as long as the simulation.
+/// Record of everything that has determined a simulation since its start: inputs, steps, and readings that change later
+/// results. A repetition gives bit-identical results and takes as long as the simulation did.
 class Journal
 {
 public:
@@ -74,15 +74,15 @@ public:
   explicit Journal(const std::vector<FmuVariable>& variables);
 
   void begin(const Values& values);
-  void step(const Values& values, double end);  ///< `end` [s]; allocates once in CHUNK bytes
+  void step(const Values& values, double end);  ///< records a step to `end` [s]; allocates once in CHUNK bytes
   void read(std::size_t reference);
 
-  /// @throws InputError if there are more than MOST bytes.
+  /// The journal as bytes. @throws InputError if there are more than MOST bytes.
   std::string bytes() const;
 
-  /// Replaces this journal by the one in `bytes`, and repeats it with a simulation of `unit`. `values`: parameters, and
-  /// inputs to be replaced. `end`: end of the last step, or `start` [s]. @throws InputError if the bytes are not a
-  /// journal of this unit with this end; ParameterError as Unit::start does.
+  /// Replaces this journal by the journal in `bytes`, and repeats it with a new simulation of `unit`. `values`: the
+  /// parameters; their inputs are replaced. `end`: end of the last step, or `start` without steps [s]. @throws
+  /// InputError if the bytes are not a journal of this unit with this end, ParameterError as Unit::start does.
   std::unique_ptr<Simulation> replay(std::string_view bytes, const Unit& unit, Values values, double start, double end,
                                      const Notice& notice);
 
@@ -94,7 +94,7 @@ private:
   void make(std::size_t room);
 
   std::vector<std::size_t> inputs_;                       // references of the inputs
-  std::vector<double> given_;                             // numbers of the inputs at the last step
+  std::vector<double> given_;                             // values of the inputs at the last step
   std::vector<std::shared_ptr<const std::string>> full_;  // filled chunks, which copies share
   std::string last_;
   bool is_too_long_{};

@@ -25,20 +25,20 @@ inline Stamp stampAt(double time)  ///< stamp of a time [s]
   return EPOCH + static_cast<Stamp>(std::llround(1e9 * time));
 }
 
-/// The simulated object of an instance from its start on.
+/// The simulation of an instance, from its start on.
 class Simulation
 {
 public:
   virtual ~Simulation() = default;
 
-  /// A copy at the same instant; with equal values both give equal bits.
+  /// A copy at the same instant. With equal inputs, copy and original give bit-identical results.
   virtual std::unique_ptr<Simulation> copy() const = 0;
 
-  /// Steps to the last instant not after `end` [s] with these input values, without allocation. @returns false if a
-  /// step had no equilibrium and the last converged state was kept.
+  /// Steps with the inputs in `values` to the last instant that is not after `end` [s], without allocation. @returns
+  /// false if a step had no equilibrium, so that the twin kept its last converged state.
   virtual bool step(const Values& values, double end) = 0;
 
-  /// Writes the value of an output. @returns false if it is that of an earlier instant.
+  /// Writes the value of an output to `values`. @returns false if the value stays that of an earlier instant.
   virtual bool read(std::size_t reference, Values& values) = 0;
 
   /// Whether reading this output changes later results.
@@ -57,8 +57,8 @@ public:
   Unit(const Unit&) = delete;
   Unit& operator=(const Unit&) = delete;
 
-  /// Starts a simulation. `start` [s]; `notice` receives messages for the user. The unit must outlive it. @throws
-  /// ParameterError if these values are invalid for a twin.
+  /// Starts a simulation at the time `start` [s]. `notice` receives messages for the user. The unit must outlive the
+  /// simulation. @throws ParameterError if `values` are invalid for a twin.
   virtual std::unique_ptr<Simulation> start(const Values& values, double start, const Notice& notice) const = 0;
 
   const std::vector<FmuVariable>& variables() const { return variables_; }

@@ -21,8 +21,8 @@ namespace hjt::fmu
 {
 namespace
 {
-/// Parameters that are not variables: of an operating twin and its topics; the last four are an input or change the
-/// description.
+/// Parameters that are not variables of a unit. Some are only for the node. Of the last four, brake.engaged_at_start is
+/// an input, and the others would change the description of the unit.
 constexpr std::array LEFT_OUT{ "joint.",
                                "life.",
                                "input.",
@@ -37,7 +37,7 @@ constexpr std::array LEFT_OUT{ "joint.",
                                "gear.teeth_flexspline",
                                "gear.teeth_circular_spline" };
 
-/// Parameters that are not variables within an arm, because the arm determines them.
+/// Parameters that are not variables of an arm's drives, because the arm determines their values.
 constexpr std::array LEFT_OUT_IN_ARM{ "output.load_inertia", "output.gravity_" };
 
 double finite(double value)
@@ -58,7 +58,7 @@ double motorCurrent(const Twin& twin, const JointOutputs&)
          telemetry.current_offset;
 }
 
-/// Makes a variable of each field.
+/// Makes a variable of the unit from each parameter.
 struct ParameterMaker
 {
   void operator()(const std::string& key, const char* unit, double value, const Range& range, const Meaning& meaning)
@@ -121,7 +121,7 @@ struct ParameterMaker
   std::vector<FmuVariable>& all;
 };
 
-/// Configured fault of a kind that is active at the start; otherwise none, at the least place allowed.
+/// Configured fault of a kind, if it acts from the start on; otherwise severity 0 at the first allowed place.
 Fault startingFault(FaultKind kind, const Parameters& parameters)
 {
   const auto found = std::find_if(parameters.faults.begin(), parameters.faults.end(),
@@ -146,7 +146,7 @@ void addInputs(const Parameters& parameters, const std::string& prefix, std::vec
       parameters.input.temperature, { MIN_TEMPERATURE, MAX_TEMPERATURE });
   all.push_back({ prefix + "brake",
                   "-",
-                  "engages the brake, after brake.delay",
+                  "true engages the brake; it acts after brake.delay",
                   Causality::INPUT,
                   Type::BOOLEAN,
                   { { parameters.brake.engaged_at_start ? 1.0 : 0.0 } } });
@@ -154,7 +154,7 @@ void addInputs(const Parameters& parameters, const std::string& prefix, std::vec
   {
     all.push_back({ prefix + "fault_" + kind.name,
                     "-",
-                    std::string("severity; 1: ") + kind.severity,
+                    std::string("severity of the fault; 1: ") + kind.severity,
                     Causality::INPUT,
                     Type::FLOAT64,
                     { { startingFault(kind.kind, parameters).severity } },
@@ -183,7 +183,7 @@ void addOutputs(const Parameters& parameters, const std::string& prefix, std::ve
                     true });
   }
 }
-/// State and readings of the drive.
+/// Outputs for the state of the drive and for the readings of its sensors.
 std::vector<ScalarOutput> driveOutputs()
 {
   using T = const Twin&;
@@ -196,17 +196,17 @@ std::vector<ScalarOutput> driveOutputs()
     { "output_velocity", "rad/s", "true speed of the circular spline", F, [](T, O o) { return o.output_velocity; } },
     { "motor_angle_encoder", "rad", "reading of the motor's encoder", F,
       [](T t, O) { return t.encoders().motor_angle; } },
-    { "motor_velocity_encoder", "rad/s", "difference quotient of the motor encoder's readings", F,
+    { "motor_velocity_encoder", "rad/s", "speed of the motor from the readings of its encoder", F,
       [](T t, O) { return t.encoders().motor_velocity; } },
-    { "output_angle_encoder", "rad", "unwrapped reading of the output's encoder", F,
+    { "output_angle_encoder", "rad", "reading of the output's encoder, over several turns", F,
       [](T t, O) { return t.encoders().output_angle; } },
-    { "output_velocity_encoder", "rad/s", "difference quotient of the output encoder's readings", F,
+    { "output_velocity_encoder", "rad/s", "speed of the output from the readings of its encoder", F,
       [](T t, O) { return t.encoders().output_velocity; } },
-    { "motor_current", "A", "current of the motor as the drive reads it, by telemetry.torque_per_current", F,
+    { "motor_current", "A", "motor current as the drive reads it, from the torque by telemetry.torque_per_current", F,
       motorCurrent },
     { "motor_torque_reading", "N.m", "motor torque as the drive estimates it from the current", F,
       [](T t, O) { return t.motorTorqueReading(); } },
-    { "motor_torque_applied", "N.m", "torque of the motor after limits and current loop", F,
+    { "motor_torque_applied", "N.m", "motor torque that acts, after limits and current loop", F,
       [](T, O o) { return o.motor_torque; } },
     { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline", F,
       [](T, O o) { return o.wave_generator_torque; } },
@@ -215,15 +215,15 @@ std::vector<ScalarOutput> driveOutputs()
       [](T, O o) { return o.friction_torque; } },
     { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked", F,
       [](T, O o) { return o.torsional_stiffness; } },
-    { "energy_residual", "J", "supplied energy less stored, dissipated and released energy since the start", F,
+    { "energy_residual", "J", "supplied - stored - dissipated - released energy since the start", F,
       [](T, O o) { return o.energy_residual; } },
     { "grease_temperature", "degC", "temperature of the grease, which determines the friction", F,
       [](T, O o) { return o.temperature; } },
     { "housing_temperature", "degC", "temperature of the housing", F, [](T, O o) { return o.housing_temperature; } },
-    { "brake_engaged", "-", "whether the brake holds the motor within its play", Type::BOOLEAN,
+    { "brake_engaged", "-", "whether the brake holds the motor, within the brake's play", Type::BOOLEAN,
       [](T, O o) { return o.brake_engaged ? 1.0 : 0.0; } },
-    { "converged", "-", "false: the ring has no equilibrium, and the last converged state is kept", Type::BOOLEAN,
-      [](T, O o) { return o.converged ? 1.0 : 0.0; } },
+    { "converged", "-", "false: the solver found no equilibrium, and the twin keeps its last converged state",
+      Type::BOOLEAN, [](T, O o) { return o.converged ? 1.0 : 0.0; } },
   };
 }
 
@@ -236,21 +236,22 @@ std::vector<ScalarOutput> healthOutputs()
   constexpr Type F = Type::FLOAT64;
   constexpr const char* LAST_WINDOW = "value of the last window that determines the indicator; 0: no such window yet";
   return {
-    { "transmission_ratio", "-", "transmission ratio over the last motor turn; 0: none yet", F,
+    { "transmission_ratio", "-",
+      "change of the motor angle / change of the output angle, over the last motor turn; 0: no value yet", F,
       [](T t, O) { return t.health().motion.transmission_ratio.value; } },
-    { "torsion", "rad", "motor angle over nominal ratio less output angle", F,
+    { "torsion", "rad", "motor angle / nominal ratio - output angle", F,
       [](T t, O) { return t.health().motion.torsion; } },
-    { "running_stiffness", "N.m/rad", "slope of the torque over the torsion during motion; 0: none yet", F,
+    { "running_stiffness", "N.m/rad", "slope of the joint torque over the torsion during motion; 0: no value yet", F,
       [](T t, O) { return t.health().motion.torsional_stiffness.value; } },
-    { "running_efficiency", "-", "efficiency of the last motion; 0: none yet", F,
+    { "running_efficiency", "-", "output power / input power of the last motion; 0: no value yet", F,
       [](T t, O) { return t.health().motion.efficiency.value; } },
-    { "running_kinematic_error", "rad", "kinematic error, peak to peak over the last motor turn; 0: none yet", F,
+    { "running_kinematic_error", "rad", "torsion, peak to peak over the last motor turn; 0: no value yet", F,
       [](T t, O) { return t.health().motion.kinematic_error.value; } },
     { "teeth_loaded", "-", "number of teeth that carry mesh force", Type::INT32,
       [](T t, O) { return static_cast<double>(t.health().lobes.teeth_loaded); } },
     { "lobe_force_0", "N", "sum of mesh forces near lobe 0", F, [](T t, O) { return t.health().lobes.mesh_force[0]; } },
     { "lobe_force_1", "N", "sum of mesh forces near lobe 1", F, [](T t, O) { return t.health().lobes.mesh_force[1]; } },
-    { "bearing_force", "N", "load of the wave generator's bearing: sum over the teeth", F,
+    { "bearing_force", "N", "sum of the wave generator's forces on all teeth, which its bearing carries", F,
       [](T t, O) { return t.health().lobes.wave_generator_force; } },
     { "assessment_level", "-", "level of the assessment: 0 OK, 1 WARN, 2 ERROR", Type::INT32,
       [](T t, O) { return static_cast<double>(t.assessment().level); }, true },
@@ -263,7 +264,7 @@ std::vector<ScalarOutput> healthOutputs()
       Type::INT32, [](T t, O) { return static_cast<double>(t.assessment().cause); }, true },
     { "assessment_confidence", "-", "probability of assessment_cause", F,
       [](T t, O) { return t.assessment().confidence; }, true },
-    { "assessment_severity", "-", "mean severity of the fault, if assessment_cause is the cause", F,
+    { "assessment_severity", "-", "mean severity of the fault assessment_cause", F,
       [](T t, O) { return t.assessment().severity; }, true },
     { "indicator_windows", "-", "number of windows for which indicators were computed", Type::INT32,
       [](T t, O) { return static_cast<double>(t.signalIndicators().windows); }, true },
@@ -353,7 +354,7 @@ void requireToken(const std::string& token, const std::string& text)
 {
   if (token != instantiationToken(text))
   {
-    throw InputError("the instantiation token '" + token + "' is not that of this library and its resources, '" +
+    throw InputError("the instantiation token is '" + token + "', but this library and its resources have '" +
                      instantiationToken(text) + "'");
   }
 }

@@ -12,7 +12,7 @@
 
 namespace hjt::fmu
 {
-/// Types of FMI 3.0, named as the elements of the description.
+/// Types of variables, with the names that FMI 3.0 uses in the description of a unit.
 enum class Type
 {
   FLOAT64,
@@ -29,18 +29,18 @@ enum class Causality
   PARAMETER
 };
 
-/// Value of a variable: a text, or numbers, one unless it is an array.
+/// Value of a variable: a text, one number, or the numbers of an array.
 struct Value
 {
   std::vector<double> numbers{ 0.0 };
   std::string text{};
 };
 
-/// A variable of the unit, for its description and calls; its value reference is its index in the list.
+/// A variable of a unit, for the unit's description and calls. Its value reference is its index in the list of all.
 struct FmuVariable
 {
   std::string name;
-  std::string unit;  ///< "-": no unit
+  std::string unit;  ///< unit of the values; "-" for no unit
   std::string description;
   Causality causality{};
   Type type{};
@@ -48,13 +48,13 @@ struct FmuVariable
   std::optional<Range> range{};
   bool is_array{};
   bool is_discrete{};  ///< whether an input of type FLOAT64 changes at discrete times only
-  bool is_clamped{};   ///< whether a number out of range is clamped, for an input
+  bool is_clamped{};   ///< whether the twin clamps a number out of range of this input
 };
 
 constexpr std::size_t TIME = 0;  ///< value reference of the time in every unit
 
-/// Variables of a drive, counted from its first one: inputs, scalar outputs, outputs of the teeth, places of the
-/// faults, then the parameters of the drive.
+/// Value references of a drive's variables, counted from the first one: inputs, scalar outputs, outputs of the teeth,
+/// places of the faults, then the parameters of the drive.
 enum DriveReference : unsigned
 {
   MOTOR_TORQUE,
@@ -72,7 +72,7 @@ struct ScalarOutput
   const char* description;
   Type type;
   double (*of)(const Twin&, const JointOutputs&);
-  bool watches{};  ///< the variable needs Twin::watchSignals, because it belongs to indicators or assessment
+  bool watches{};  ///< whether the output needs Twin::watchSignals, as indicators and assessment do
 };
 const std::vector<ScalarOutput>& scalarOutputs();
 
@@ -86,8 +86,8 @@ const std::vector<ToothOutput>& toothOutputs();
 
 FmuVariable timeVariable();
 
-/// Adds the variables of a drive with this prefix. Excluded are parameters of the twin beside a robot, of publishing,
-/// and those that would change sizes or steps; within an arm also those that the arm determines.
+/// Adds the variables of a drive with this prefix. Some parameters are no variables: those of a twin beside a robot, of
+/// publishing, those that would change sizes or steps, and in an arm also those that the arm determines.
 void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all);
 
 /// All variables of a unit for one drive: time, then the drive.
@@ -96,11 +96,12 @@ std::vector<FmuVariable> driveVariables(const Parameters& parameters);
 /// Index of the place of a kind of fault, counted from the drive's first variable.
 std::size_t placeReference(std::size_t kind);
 
-/// Token of the resources' texts and this version, which ties description, library and resources to each other.
+/// Token by which a unit detects that its description, library and resources belong together. It follows from the
+/// texts of the resources and from the version of the package.
 std::string instantiationToken(const std::string& text);
 void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError for another token
 
-/// Parameters that name a file. The file is in the unit, and the value is its name.
+/// Parameters whose value is the name of a file. The file is in the unit.
 constexpr const char* FILE_PARAMETERS[]{ "indicators.signatures", "manufacture.flexspline_pitch_table",
                                          "manufacture.circular_spline_pitch_table" };
 constexpr const char* PARAMETER_FILE = "parameters.yaml";  ///< file in the resources
