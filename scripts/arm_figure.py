@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws two runs of `joint_twin arm`: angle and current of the elbow, error of the tool's position."""
+"""Draws two runs of `joint_twin arm`: angle and current of the elbow, and distance of the tool from its set point."""
 import argparse
 
 import numpy as np

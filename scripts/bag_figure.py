@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws a simulated joint: commands, motion, and forces of its teeth."""
+"""Draws the simulation of a joint: commands, motion, and forces of the teeth."""
 import numpy as np
 
 from drawing import BLUE, GREEN, GREY, ORANGE, RED, STYLE, plt
@@ -22,7 +22,7 @@ def legend(axes):
 
 
 def steps(series, end):
-    """A stamped torque holds until the next one."""
+    """Times and torques of a course of steps: a stamped torque is valid until the next one."""
     return np.append(series.time, end), np.append(series["torque"], series["torque"][-1])
 
 
@@ -57,7 +57,7 @@ def draw_speed(axes, recording):
 
 
 def torsion(recording):
-    """Time and motor angle / ratio - joint angle [mrad], by the model's true angles."""
+    """Time [s] and torsion (motor angle / ratio - joint angle) [mrad], from the true angles of the model."""
     encoders = recording["encoders"]
     time, motor = thin(encoders, "motor_angle_true", 1.0 / recording.ratio)
     return time, (motor - thin(encoders, "output_angle_true")[1]) * 1e3
@@ -153,7 +153,7 @@ def draw_health(axes, recording):
 def draw(recording, title, path):
     """Writes the figure as PNG."""
     plt.rcParams.update({**STYLE, "figure.dpi": 120})
-    # Not by constrained_layout: that of matplotlib 3.3 leaves no room for a title above nested grids.
+    # constrained_layout is not used, because in matplotlib 3.3 it leaves no room for a title above nested grids.
     figure = plt.figure(figsize=(13.5, 9.0))
     figure.suptitle(title, fontsize=13, fontweight="bold", x=0.01, y=0.985, ha="left")
     left, right = figure.add_gridspec(1, 2, width_ratios=[1.75, 1.0], left=0.055, right=0.965, bottom=0.06, top=0.925,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the page and the figures of a comparison out of the data that `joint_twin compare` has written into a
-directory; of an arm a page of each joint, and one of the arm; or of what `joint_twin trend` has written.
+"""Makes the page and the figures of a report from the data that `joint_twin compare` or `joint_twin trend` has written.
 
-Each figure is drawn twice, for wide and for narrow screens; both lie beside the page and inside it."""
+`compare` of an arm gives a page for each joint and one for the arm. Each figure is drawn twice, for wide and for narrow
+screens. Both are in the page, and as files beside it."""
 import argparse
 import base64
 import concurrent.futures
@@ -30,12 +30,12 @@ STYLE = {"figure.dpi": DPI, "font.size": 9, "axes.spines.top": False, "axes.spin
          "axes.edgecolor": "0.5"}
 WIDTHS = {"wide": 8.6, "narrow": 4.1}  # [inch]
 SHOWN_INDICATORS = 12
-LOWEST_ORDER = 0.3   # below it lies what the load's error makes, not ripple
-RING_STRETCH = 10.0  # of the flexspline's deformation
+LOWEST_ORDER = 0.3   # lowest order of ripple; errors of the load cause lower orders
+RING_STRETCH = 10.0  # factor by which the deformation of the flexspline is drawn larger
 
 
 def read_table(directory, name):
-    """Columns by name; None if the comparison has no such table or no row in it."""
+    """Columns of a table by name; None if the report lacks the table, or if the table has no rows."""
     path = os.path.join(directory, name + ".csv")
     if not os.path.exists(path):
         return None
@@ -50,14 +50,14 @@ def new_figure(width, height, rows=1, columns=1, **settings):
 
 
 def with_gaps(time, *columns):
-    """The same with a NaN where rows are missing, so that no line is drawn over the hole."""
+    """Time and columns, with a NaN at each gap between rows, so that no line is drawn over the gap."""
     step = np.diff(time)
     holes = np.flatnonzero(step > 20.0 * np.median(step)) + 1 if len(step) else []
     return [np.insert(column, holes, np.nan) for column in (time, *columns)]
 
 
 def shift_to(course, twin, name):
-    """Offset of the twin's angle at the first common instant: a twin does not start at the robot's position."""
+    """Measured minus simulated angle at the first common instant. A twin does not start at the robot's position."""
     start = max(course["time"][0], twin["time"][0])
     return (np.interp(start, course["time"], course[name]) - np.interp(start, twin["time"], twin[name]))
 
@@ -98,7 +98,8 @@ def draw_course(width, data):
 
 
 def draw_factor(axes, points, record):
-    """Band of the factor's interval about the mean of the measured friction, each way; both hold what joints share."""
+    """Draws the interval of the friction factor as a band about the mean measured friction, for each direction. Band
+    and measured friction include the common factor of the joints."""
     factor = record["friction_factor"]
     if factor is None:
         return
@@ -227,7 +228,7 @@ FIGURES = {"course": draw_course, "friction": draw_friction, "torsion": draw_tor
 
 
 def recording_times(trend):
-    """Of each recording: its date, or without dates its number; None: it has none."""
+    """For each recording its date, or None without one. If no recording has a date, the numbers of the recordings."""
     if not trend["has_dates"]:
         return list(range(1, len(trend["recordings"]) + 1))
     dates = [recording["date"] for recording in trend["recordings"]]
@@ -235,7 +236,7 @@ def recording_times(trend):
 
 
 def joint_rows(trend, place):
-    """(time, fields of the joint) of each recording that was read."""
+    """(time, fields of the joint) of each recording that could be read."""
     return [(time, recording["joints"][place]) for time, recording in zip(recording_times(trend), trend["recordings"])
             if recording["joints"]]
 
@@ -308,7 +309,7 @@ TREND_FIGURES = {"friction": draw_trend_friction, "temperature": draw_trend_temp
 
 
 def draw_all(directory, data, figures):
-    """Writes every figure there is data for, in each width; their pictures as data URIs by name and width."""
+    """Writes each figure that has data, in each width. Returns the pictures as data URIs, by name and width."""
     plt.rcParams.update(STYLE)
     pictures = {}
     for name, draw in figures.items():
@@ -317,7 +318,7 @@ def draw_all(directory, data, figures):
             if figure is None:
                 continue
             path = os.path.join(directory, f"{name}.png" if kind == "wide" else f"{name}_{kind}.png")
-            figure.canvas.print_png(path)  # savefig draws, and lays out, everything twice
+            figure.canvas.print_png(path)  # savefig would draw and lay out everything twice
             plt.close(figure)
             with open(path, "rb") as file:
                 text = base64.b64encode(file.read()).decode("ascii")
@@ -356,7 +357,7 @@ def make_trend_page(directory):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("directory", help="that `--report` of compare or trend has written to")
+    parser.add_argument("directory", help="directory that `--report` of compare or trend has written")
     directory = parser.parse_args().directory
     if os.path.exists(os.path.join(directory, "trend.json")):
         make_trend_page(directory)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the demo's torque profile as a bag: start, run, load step, reverse, stop, as stamped commands."""
+"""Writes the torque profile of the demo as a bag of stamped commands: start, run, load step, reverse, stop."""
 import argparse
 
 import numpy as np
@@ -9,12 +9,12 @@ import rospy
 from sensor_msgs.msg import JointState
 
 NAMESPACE = "/joint_twin"
-JOINT = "shoulder_pan_joint"  # as config/joints/base.yaml names it
-RATE = 125.0                  # of a UR5's controller [Hz]
-START_STAMP = 1.0             # stamps start here: zero would mean 'now' to ROS [s]
+JOINT = "shoulder_pan_joint"  # name of the joint in config/joints/base.yaml
+RATE = 125.0                  # rate of a UR5's controller [Hz]
+START_STAMP = 1.0             # first stamp; ROS takes a stamp of 0 as the present time [s]
 
-# (time [s], torque [N.m]), straight lines between. Friction takes about 0.2 N.m of the motor, the load 1/101 of its
-# own.
+# Points (time [s], torque [N.m]) with straight lines between them. Friction needs about 0.2 N.m of motor torque, and a
+# load needs 1/101 of its own torque.
 MOTOR_TORQUE = [(0.0, 0.0), (0.4, 0.0), (0.5, 0.42), (0.9, 0.42), (1.0, 0.26), (2.4, 0.26), (2.5, 0.68), (3.6, 0.68),
                 (3.7, 0.10), (3.9, -0.42), (4.5, -0.42), (4.6, -0.26), (6.6, -0.26), (6.7, 0.0), (8.0, 0.0)]
 LOAD_TORQUE = [(0.0, 0.0), (2.4, 0.0), (2.5, 40.0), (3.6, 40.0), (3.7, 0.0), (8.0, 0.0)]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""matplotlib without a screen, a style, and Okabe and Ito's colours: distinct for every eye and in grey."""
+"""Sets up matplotlib without a screen. Defines a style, and the colours of Okabe and Ito, which differ for every eye
+and in grey."""
 import os
 
-# The settings of no matplotlibrc: neither one in the folder of the call, whatever it holds, nor the user's.
+# No matplotlibrc has an effect, neither one in the current folder nor the user's.
 FOLDER = os.getcwd()
 os.chdir(os.path.dirname(os.path.abspath(__file__)))
 try:

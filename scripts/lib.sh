@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Shared by the scripts beside it; to be sourced by bash, not run.
+# Functions for the scripts of this folder. Bash sources this file; it is not run.
 # shellcheck shell=bash disable=SC2034
 set -euo pipefail
 
@@ -7,29 +7,30 @@ PROJECT_DIR=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 BUILD_DIR=$(realpath -m "${HJT_BUILD_DIR:-$PROJECT_DIR/build}")
 JOBS=${HJT_JOBS:-$(nproc)}
 
-# Debian's own Python, CMake and compilers before any that a user keeps elsewhere: ROS' Python modules belong to it.
+# Debian's Python, CMake and compilers come before those that a user has elsewhere, because the Python modules of ROS
+# belong to Debian's Python.
 export PATH="/usr/bin:/bin:$PATH"
-# Masters and nodes of builds, tests and the demo talk over the loopback device, whatever the machine is called.
+# Masters and nodes use the loopback device, so that the name of the machine has no effect.
 export ROS_HOSTNAME=localhost
 unset ROS_IP
 export LC_ALL=C.UTF-8 PYTHONUNBUFFERED=1
 
 NOETIC_SETUP=/opt/ros/noetic/setup.sh
 
-# Heading of a step.
+# Prints the heading of a step.
 say()
 {
   printf '\n== %s\n' "$*"
 }
 
-# Whether the arguments ask for help.
+# Whether the arguments contain -h or --help.
 wants_help()
 {
   case " $* " in *" --help "* | *" -h "*) return 0 ;; esac
   return 1
 }
 
-# The head comment of a script is its help, where no program behind it has one.
+# Prints the comment at the head of a script as its help, and ends the script.
 answer_help()
 {
   wants_help "$@" || return 0
@@ -44,17 +45,17 @@ fail()
   exit 1
 }
 
-# Brings an environment of ROS into this shell. Its files are not written for `set -u`.
+# Loads an environment of ROS into this shell. The files of ROS do not work with `set -u`.
 source_ros()
 {
-  [ -f "$1" ] || fail "no $1: run scripts/build first"
+  [ -f "$1" ] || fail "$1 does not exist; run scripts/build first"
   set +eu
   # shellcheck disable=SC1090
   source "$1"
   set -eu
 }
 
-# ROS itself. Debian keeps it in /usr and needs nothing; Noetic has a folder of its own.
+# Loads the installed ROS. Debian has it in /usr, so nothing needs to be loaded. Noetic has a folder of its own.
 source_installed_ros()
 {
   if [ -f "$NOETIC_SETUP" ]; then
@@ -62,7 +63,7 @@ source_installed_ros()
   fi
 }
 
-# The built package over the installed ROS.
+# Loads the built package on top of the installed ROS.
 source_built_package()
 {
   source_ros "$BUILD_DIR/devel/setup.sh"

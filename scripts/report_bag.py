@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads a bag with a simulated joint; prints a table of the results and draws them."""
+"""Reads a bag with the output of a twin, prints a table of the results, and draws a figure of them."""
 import argparse
 import os
 import sys
@@ -11,12 +11,13 @@ import rosbag
 from bag_figure import draw
 from bag_series import Recording
 
-MOST_MISSING = 1.0  # of simulated time at the end [s]
-SOLVER_STATES = {0: "every step converged", 1: "some steps were cut", 2: "FAILED: last good state held"}
+MOST_MISSING = 1.0  # largest simulated time that may be missing at the end [s]
+SOLVER_STATES = {0: "every step converged", 1: "some steps were divided, or too long, or a tooth jumped",
+                 2: "FAILED: the twin kept its last converged state"}
 
 
 def typical(health, name):
-    """Median of an indicator that has a flag for being there; None if it never was."""
+    """Median of an indicator over the messages in which it is valid; None if it never is."""
     valid = health[name + "_valid"].astype(bool)
     return np.median(health[name][valid]) if valid.any() else None
 
@@ -26,11 +27,11 @@ def span(values, factor=1.0):
 
 
 def shown(value, format_text, factor=1.0):
-    return "not yet" if value is None else format_text.format(value * factor)
+    return "no value" if value is None else format_text.format(value * factor)
 
 
 def surface_share(health):
-    """None: the bag is older than the field."""
+    """Share of the messages that come from the response surface [-]; None if the bag was made before this field."""
     return health["on_response_surface"].mean() if "on_response_surface" in health.fields else None
 
 
@@ -55,7 +56,7 @@ def health_rows(health):
         ("efficiency, median", shown(typical(health, "efficiency"), "{:.1f}", 100.0), "%"),
         ("teeth loaded, most", f"{health['teeth_loaded'].max()}", "-"),
         ("wave generator bearing load, most", f"{health['wave_generator_load'].max():.0f}", "N"),
-        ("energy unaccounted for, most", f"{np.abs(health['energy_residual']).max():.2g}", "J"),
+        ("largest energy residual", f"{np.abs(health['energy_residual']).max():.2g}", "J"),
         ("solver failures", f"{health['solver_failures'].max()}", "-"),
         ("on the response surface", shown(surface_share(health), "{:.0f}", 100.0), "%"),
         ("solver", SOLVER_STATES.get(int(health["solver_state"].max()), "unknown state"), ""),
@@ -93,7 +94,7 @@ def print_table(recording):
 
 
 def check_complete(recording):
-    """Complains if the twin fell silent before its commands did."""
+    """Ends the script with an error if the output of the twin ends long before its commands."""
     commands = recording["command"]
     missing = commands.time[-1] - recording["joint_states"].time[-1] if len(commands) else 0.0
     if missing > MOST_MISSING:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs /clock on from the end of a bag that has been played, so that a twin which holds back simulates to its end."""
+"""Publishes /clock for some time after the end of a played bag, so that the twin, which is behind the clock, also
+simulates the end of the bag."""
 import argparse
 import time
 
@@ -9,13 +10,13 @@ import rosgraph
 import rospy
 from rosgraph_msgs.msg import Clock
 
-PATIENCE = 10.0     # for the listeners of the clock [s]
-PERIOD = 0.001      # between two messages on the clock [s]
-ROUNDING = 1e-6     # of the bag's end, which rosbag tells as a float since the epoch [s]
+PATIENCE = 10.0     # longest wait for the subscribers of /clock [s]
+PERIOD = 0.001      # time between two messages on /clock [s]
+ROUNDING = 1e-6     # rounding error of the bag's end, which rosbag gives as a float since the epoch [s]
 
 
 def connect():
-    """A publisher of /clock, once all who listen to it have found it."""
+    """Returns a publisher of /clock after all subscribers have connected, or after PATIENCE."""
     clock = rospy.Publisher("/clock", Clock, queue_size=1000)
     master = rosgraph.Master(rospy.get_name())
     deadline = time.monotonic() + PATIENCE
@@ -31,9 +32,9 @@ def connect():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("bag", help="the bag that has been played")
-    parser.add_argument("duration", type=float, help="how far the clock runs on [s]")
-    parser.add_argument("--rate", type=float, default=1.0, help="speed of the clock, times real time")
-    parser.add_argument("--wait", type=float, default=0.0, help="by the wall clock, once the clock stands [s]")
+    parser.add_argument("duration", type=float, help="time by which the clock advances beyond the end of the bag [s]")
+    parser.add_argument("--rate", type=float, default=1.0, help="speed of the clock as a multiple of real time")
+    parser.add_argument("--wait", type=float, default=0.0, help="wait at the end, in wall clock time [s]")
     options = parser.parse_args(rospy.myargv()[1:])
     with rosbag.Bag(options.bag) as bag:
         end = rospy.Time.from_sec(bag.get_end_time() + ROUNDING)

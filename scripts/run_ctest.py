@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs ctest in the current folder and names what its closing lines do not: every skipped test with its reason, every
-test that passed only when it was repeated, and the sums of the tests' own times by label. They stand just before
-ctest's closing lines.
+"""Runs ctest in the current folder. Before the closing lines of ctest the script prints what these lines lack: each
+skipped test with its reason, each test that passed only when it was repeated, and the sums of the test times by label.
 
 Usage: run_ctest.py [OPTION OF CTEST...]
-Ends with ctest's exit code; with 1 if ctest passed and a test was skipped without a reason.
+The exit code is that of ctest, or 1 if ctest passed and a test was skipped without a reason.
 
-A test labelled `timed` judges time, and a machine shared with others can make it late: one that fails runs a second
-time, alone, after all others.
+A test with the label `timed` depends on time and can fail on a busy machine. If it fails, it runs a second time, alone,
+after all other tests.
 
-A reason is a line `skipped: REASON` in the test's output, or the words of Python's unittest. rosunit does not show the
-output of a test with a master: its reasons are read from the results in test_results/.
+A reason is a line `skipped: REASON` in the output of a test, or the text of Python's unittest. rosunit does not show
+the output of a test with a master, so the script reads the reasons from the results in test_results/.
 """
 import collections
 import json
@@ -23,16 +22,16 @@ import time
 
 CLOSING = re.compile(r"\d+% tests passed")
 RESULT = re.compile(r"\s*(?:\d+/\d+\s+)?Test\s+#\d+: (\S+) \.*\s*(\*\*\*[^\d\s]+|Passed).*?(\d+\.\d+) sec")
-TIMED = "timed"  # the label
+TIMED = "timed"  # label of tests that depend on time
 GIVEN = re.compile(r"^skipped: *(.*)$", re.MULTILINE)
 BY_UNITTEST = re.compile(r"skipped (['\"])(.*)\1$", re.MULTILINE)
-# A runner's own count of the tests that it skipped.
+# Number of skipped tests, as unittest or gtest prints it.
 COUNTED = re.compile(r"^(?:OK|FAILED) \(.*\bskipped=(\d+)|^\[  SKIPPED \] (\d+) tests?,", re.MULTILINE)
 
 
 def run(arguments):
-    """Runs ctest and prints its output as it comes, but the closing lines. @returns exit code, the closing lines, the
-    results of each test in their order, {name: ["***Failed", "Passed"]}, and their times [s]."""
+    """Runs ctest and prints its output at once, except the closing lines. @returns exit code, closing lines, the
+    results of each test in their order, {name: ["***Failed", "Passed"]}, and the times of the tests [s]."""
     closing, results, times = [], {}, collections.Counter()
     command = ["ctest", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, universal_newlines=True, errors="replace") as ctest:
@@ -49,7 +48,7 @@ def run(arguments):
 
 
 def labels():
-    """Those of every test, by name."""
+    """Labels of every test, by its name."""
     listed = subprocess.run(["ctest", "--show-only=json-v1"], stdout=subprocess.PIPE, universal_newlines=True,
                             check=False)
     try:
@@ -61,7 +60,7 @@ def labels():
 
 
 def sums(times, labels_of):
-    """Lines of the tests' own times: of each label, and of all."""
+    """Lines with the sums of the test times: for each label, and for all tests."""
     by_label = collections.defaultdict(list)
     for name, seconds in times.items():
         for label in labels_of.get(name, []):
@@ -71,13 +70,13 @@ def sums(times, labels_of):
 
 
 def repeat(arguments, closing, results, times, labels_of):
-    """Runs each timed test that failed again. @returns the closing lines less those that passed then, or None if none
-    did."""
+    """Runs again each timed test that failed. @returns the closing lines without the tests that then passed, or None if
+    no test did."""
     late = [name for name, states in results.items() if states[-1] not in ("Passed", "***Skipped", "***Not")
             and TIMED in labels_of.get(name, [])]
     if not late or any(option.startswith("--repeat") for option in arguments):
         return None
-    print("\nOnce more, alone: " + ", ".join(late), flush=True)
+    print("\nThese tests run once more, alone: " + ", ".join(late), flush=True)
     options = ["--output-on-failure"] if "--output-on-failure" in arguments else []
     chosen = "^(" + "|".join(map(re.escape, late)) + ")$"
     _, _, again, more = run([*options, "-j", "1", "-R", chosen])
@@ -88,7 +87,7 @@ def repeat(arguments, closing, results, times, labels_of):
 
 
 def without(closing, passed):
-    """Closing lines of ctest in which these tests have not failed; None if nothing changes."""
+    """Closing lines of ctest as if the tests `passed` had not failed; None if `passed` is empty."""
     if not passed:
         return None
     kept = [line for line in closing.splitlines() if not any(f" - {name} (" in line for name in passed)]
@@ -102,7 +101,7 @@ def without(closing, passed):
 
 
 def outputs(started):
-    """What each test wrote in its last run, by name."""
+    """Output of each test in its last run, by the name of the test."""
     log = pathlib.Path("Testing/Temporary/LastTest.log")
     if not log.exists():
         return {}
@@ -116,7 +115,7 @@ def outputs(started):
 
 
 def reasons(output):
-    """Reasons for skipping in a test's output; an empty one for each skipped test that has none."""
+    """Reasons of skipped tests in the output of a test; an empty reason for each skipped test without one."""
     given = [reason.strip() for reason in GIVEN.findall(output)]
     given += [reason.strip() for _, reason in BY_UNITTEST.findall(output)]
     counts = [int(by_unittest or by_gtest) for by_unittest, by_gtest in COUNTED.findall(output)]
@@ -124,7 +123,7 @@ def reasons(output):
 
 
 def skipped(results, started):
-    """(test, reason) of every test that was skipped, whole or in part."""
+    """(test, reason) of every test that was skipped completely or in part."""
     found = []
     for name, output in outputs(started).items():
         given = reasons(output)
@@ -140,7 +139,7 @@ def main():
         return 0
     started = time.time()
     arguments = sys.argv[1:]
-    labels_of = labels()  # first: ctest writes its log anew for every question
+    labels_of = labels()  # must come before the tests, because ctest overwrites its log whenever it runs
     code, closing, results, times = run(arguments)
     without_test = skipped(results, started)
     cleared = repeat(arguments, closing, results, times, labels_of)
