@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sets up matplotlib without a screen. Defines a style, and the colours of Okabe and Ito, which differ for every eye
-and in grey."""
+"""Sets up matplotlib without a screen, a style, and Okabe and Ito's colours, which differ for every eye and in grey."""
 import os
 
 # No matplotlibrc has an effect, neither one in the current folder nor the user's.

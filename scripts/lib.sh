@@ -7,8 +7,7 @@ PROJECT_DIR=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 BUILD_DIR=$(realpath -m "${HJT_BUILD_DIR:-$PROJECT_DIR/build}")
 JOBS=${HJT_JOBS:-$(nproc)}
 
-# Debian's Python, CMake and compilers come before those that a user has elsewhere, because the Python modules of ROS
-# belong to Debian's Python.
+# Debian's Python, CMake and compilers come first, because the Python modules of ROS belong to Debian's Python.
 export PATH="/usr/bin:/bin:$PATH"
 # Masters and nodes use the loopback device, so that the name of the machine has no effect.
 export ROS_HOSTNAME=localhost

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Publishes /clock for some time after the end of a played bag, so that the twin, which is behind the clock, also
-simulates the end of the bag."""
+"""Continues /clock after the end of a played bag, so that the twin, which is behind the clock, simulates the end."""
 import argparse
 import time
 

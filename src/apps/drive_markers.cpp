@@ -17,7 +17,7 @@
 
 namespace
 {
-/// @throws hjt::ParameterError if the parameter is missing, not a number, or not positive.
+/// Reads a number from the parameter server. @throws hjt::ParameterError if it is missing, no number, or not positive.
 double readPositive(const ros::NodeHandle& node, const std::string& name, const std::string& unit)
 {
   double value = 0.0;
@@ -28,7 +28,7 @@ double readPositive(const ros::NodeHandle& node, const std::string& name, const 
   return value;
 }
 
-/// @throws hjt::ParameterError if the parameter is missing or empty.
+/// Reads a text from the parameter server. @throws hjt::ParameterError if it is missing or empty.
 std::string readText(const ros::NodeHandle& node, const std::string& name, const std::string& meaning)
 {
   std::string value;

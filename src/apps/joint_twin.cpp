@@ -30,7 +30,7 @@ bool asksForHelp(int argc, char** argv)
   return first == "--help" || first == "-h";
 }
 
-/// Replaces this process by the tool with all commands, which is in the same directory.
+/// Replaces this process by joint_twin_complete, the tool with all commands, which is in the same directory.
 int runComplete(char** argv)
 {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");

@@ -43,7 +43,7 @@ namespace hjt
 {
 namespace
 {
-/// Whether this node is among the publishers of `topic` in a master's state.
+/// Whether this node is a publisher of `topic` in `publishers`, which is part of a master's state.
 bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
 {
   for (int i = 0; i < publishers.size(); ++i)
@@ -78,8 +78,8 @@ bool isKnownToMaster()
                      [&](const std::string& topic) { return hasThisNode(state[0], topic); });
 }
 
-/// Waits until the node shall end. @returns false if another master has replaced the first one. The new master does not
-/// know the node's topics; a new start of the node sets its parameters and registrations again.
+/// Waits until ROS shuts the node down. @returns false if another master has replaced the first one. A new master does
+/// not know the node's topics. Only a new start of the node sets parameters and registrations again.
 bool waitForShutdownOrNewMaster()
 {
   constexpr int LOOKS = 100;  // number of polls of ros::ok() between two questions to the master
@@ -100,8 +100,8 @@ bool waitForShutdownOrNewMaster()
 
 /// The live twin: connects a `Twin` to the topics and services of a node.
 ///
-/// Threads: the loop advances the twin, a publisher sends the messages, another thread ages the drive. Callbacks,
-/// diagnostics and services run in the spinner's threads, at least two, because a reset waits for the loop.
+/// It has these threads: the loop advances the twin, a publisher sends the messages, and another thread ages the drive.
+/// Callbacks, diagnostics and services run in at least two threads of a spinner, because a reset waits for the loop.
 class TwinNode
 {
 public:
@@ -172,7 +172,7 @@ private:
 
 namespace
 {
-/// Time without a first message on /clock after which the node warns [s].
+/// Time after the start at which the node warns if no message has arrived on /clock [s].
 constexpr double CLOCK_PATIENCE = 10.0;
 
 void warnOfParameters(const hjt::FoundParameters& found, const std::string& name,
@@ -233,7 +233,7 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   }
 }
 
-/// Items of a list that is separated by commas.
+/// Items of a list with commas between the items.
 std::vector<std::string> itemsOf(const std::string& list)
 {
   std::vector<std::string> items;
@@ -378,8 +378,8 @@ std::string affixOf(const ros::NodeHandle& node, const std::string& key)
   return affix;
 }
 
-/// Runs all joints of the arm `asked`: its files, each joint changed by the node's parameters. The results are on the
-/// parameter server in the namespace of each joint.
+/// Runs the twins of all joints of the arm `asked`. Their parameters are those of the arm's files, changed by those of
+/// the node. The function writes them to the parameter server, in the namespace of each joint.
 void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundParameters& found)
 {
   const auto directory = hjt::configurationDirectory("");

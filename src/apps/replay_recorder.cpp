@@ -29,7 +29,6 @@ namespace
 {
 using topic_tools::ShapeShifter;
 
-/// Topics of the played bag, and topics that the twin publishes.
 std::set<std::string> topicsToRecord(const std::string& played_bag, const std::string& twin_namespace)
 {
   std::set<std::string> topics{ "/diagnostics" };
@@ -62,7 +61,7 @@ public:
   {
     for (const std::string& topic : topics)
     {
-      constexpr std::uint32_t NO_BOUND = 0;  // ROS' own queue has no limit, because `receive` empties the queue at once
+      constexpr std::uint32_t NO_BOUND = 0;  // the queue of ROS has no limit, because `receive` empties it at once
       subscribers_.push_back(node_.subscribe<ShapeShifter>(
           topic, NO_BOUND, [this, topic](const ShapeShifter::ConstPtr& message) { receive(topic, message); },
           ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
@@ -144,12 +143,12 @@ private:
   std::mutex mutex_;  // protects the four members below
   std::condition_variable arrived_;
   std::deque<Waiting> waiting_;
-  std::size_t bytes_{};  // size of all waiting messages
+  std::size_t bytes_{};  // total size of all messages that wait for the disk [bytes]
   std::map<std::string, std::uint64_t> lost_;
   std::vector<ros::Subscriber> subscribers_;
 };
 
-/// FILE_twin.bag in the directory of FILE.bag.
+/// Path of the output for the played bag FILE.bag: FILE_twin.bag in the directory of FILE.bag.
 std::string defaultOutput(const std::filesystem::path& played_bag)
 {
   const std::string stem = (played_bag.extension() == ".bag" ? played_bag.stem() : played_bag.filename()).string();
@@ -196,7 +195,7 @@ int main(int argc, char** argv)
   }
   catch (const std::exception& error)
   {
-    // ROS' console ends with the last node handle.
+    // The console of ROS ends with the last node handle, so it cannot print this error.
     std::cerr << "replay_recorder: " << error.what() << '\n';
     return hjt::EXIT_FAILED;
   }

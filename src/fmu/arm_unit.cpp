@@ -94,7 +94,7 @@ public:
   {
     ArmTwin& twin = moving_.twin();
     const std::uint64_t failures = countersOf(twin).solver_failures;
-    const Stamp until = stampAt(end) + settling_ + twin.stepLength() / 1000;  // tolerance for rounded sums of steps
+    const Stamp until = stampAt(end) + settling_ + twin.stepLength() / 1000;  // plus a tolerance for rounding
     takeSetPoint(values, set_point_);
     moving_.goOn(timeOf(stampAt(end)), set_point_);
     giveInputs(values, until);

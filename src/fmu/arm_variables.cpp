@@ -15,7 +15,7 @@ namespace
 {
 constexpr Range ANY{ -1e300, 1e300 };
 
-/// Visits all values of an arm with their keys, for reading or writing.
+/// Calls `fields` with the key, unit, value, range and meaning of all values of an arm. It reads or writes them.
 template <class Arm, class Fields>
 void visitArm(Arm& arm, Fields& fields)
 {
@@ -49,7 +49,7 @@ void visitArm(Arm& arm, Fields& fields)
     fields(place + "position", "m", link.position, ANY,
            "origin of the link's frame in the frame of the link before, at a joint angle of 0");
     fields(place + "rotation", "-", link.rotation, ANY,
-           "rotation of the link's frame in the frame of the link before, row by row");
+           "rotation matrix of the link's frame in the frame of the link before, row by row");
     fields(place + "mass", "kg", link.mass, ANY, "mass of the link");
     fields(place + "centre", "m", link.centre, ANY, "centre of mass in the link's frame");
     fields(place + "inertia", "kg.m^2", link.inertia, ANY, "inertia of the link about its centre of mass");
@@ -76,7 +76,7 @@ struct Reader
   FieldReader fields;
 };
 
-/// Writes lines of YAML, with a list of maps for keys that contain numbers.
+/// Writes lines of YAML. A key that contains a number becomes an item of a list of maps.
 struct Writer
 {
   void operator()(const std::string& key, const char*, double value, const Range&, const char*)
@@ -143,7 +143,7 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
     const bool is_array = start.size() > 1;
     all.push_back({ name, unit, meaning, Causality::INPUT, Type::FLOAT64, { std::move(start) }, range, is_array });
   };
-  constexpr double WRENCH = 1000.0;  // limit of the node's ~wrench [N], [N.m]
+  constexpr double WRENCH = 1000.0;  // limit of each component, as on the node's ~wrench [N], [N.m]
   const std::vector<double> zeros(arm.joints.size(), 0.0);
   add("target_q", "rad", "angles of the joints' set points at the end of the step", zeros, ANGLES);
   add("target_qd", "rad/s", "speeds of the joints' set points at the end of the step", zeros, { -100.0, 100.0 });

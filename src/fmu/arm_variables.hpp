@@ -29,7 +29,7 @@ enum ArmReference : unsigned
   WRENCH_MOMENT,
   PAYLOAD_MASS,
   PAYLOAD_CENTRE,
-  FIRST_ARM_OUTPUT,  ///< ARM_QUANTITIES from the feedforward's current on
+  FIRST_ARM_OUTPUT,  ///< first of seven outputs, those of ARM_QUANTITIES from the feedforward's current on
   TOOL_ORIENTATION = FIRST_ARM_OUTPUT + 7,
   TOOL_ERROR,
   PROTECTIVE_STOP,
@@ -44,7 +44,6 @@ enum ArmReference : unsigned
   FIRST_DRIVE
 };
 
-/// Prefix of the names of a joint's variables.
 std::string prefixOf(const ArmJoint& joint);
 
 /// All variables of a unit for an arm. The joints of the arm must have gains.

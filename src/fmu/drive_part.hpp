@@ -47,9 +47,9 @@ private:
   std::optional<ToothForces> forces_;
 };
 
-/// Parses parameters from the resources of a unit in `folder`. @throws InputError, ParameterError.
+/// Reads parameters from `text`. Files that they name are in `folder`. @throws InputError, ParameterError.
 Parameters readParameters(const std::string& text, const std::string& folder);
 
-/// Source of response surfaces for all instances of the process.
+/// Source of response surfaces, which all instances of this process share.
 SurfaceSource unitSurfaces(const Notice& notice);
 }  // namespace hjt::fmu

@@ -21,7 +21,7 @@ public:
   bool step(const Values& values, double end) override
   {
     const std::uint64_t failures = twin_.counters().solver_failures;
-    const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // tolerance for rounded sums of steps
+    const Stamp until = stampAt(end) + twin_.stepLength() / 1000;  // with a tolerance for rounded sums of steps
     const Stamp last = until - twin_.stepLength();                 // last instant at which a step can begin
     if (twin_.stamp() <= last)
     {

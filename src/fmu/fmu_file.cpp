@@ -163,7 +163,7 @@ std::string element2(const FmuVariable& variable, std::size_t reference)
          (variable.type == Type::STRING ? attribute("start", variable.start.text) : "") + "/></ScalarVariable>\n";
 }
 
-/// A variable of a description with its value reference.
+/// A variable in the description of a unit, with its value reference.
 struct Referred
 {
   FmuVariable variable;
@@ -312,7 +312,7 @@ private:
 
 namespace fs = std::filesystem;
 
-/// Writes the directory of a unit's resources.
+/// Adds the files in the directory `resources` of a unit.
 class Resources
 {
 public:

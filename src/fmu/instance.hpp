@@ -32,7 +32,7 @@ struct References
   Version version;
 };
 
-/// State of an instance in FMI.
+/// Mode of an instance, which says which calls FMI allows.
 enum class Mode
 {
   INSTANTIATED,

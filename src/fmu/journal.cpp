@@ -10,7 +10,7 @@ namespace
 {
 constexpr char STEP = 'S';
 constexpr char READ = 'R';
-using InputIndex = std::uint16_t;  // index among the numbers of all inputs
+using InputIndex = std::uint16_t;  // index of a number among the numbers of all inputs
 
 bool sameBits(double a, double b)
 {

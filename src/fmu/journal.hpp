@@ -93,7 +93,7 @@ private:
   void forInputs(const Values& values, const Put& put);
   void make(std::size_t room);
 
-  std::vector<std::size_t> inputs_;                       // references of the inputs
+  std::vector<std::size_t> inputs_;                       // value references of the inputs
   std::vector<double> given_;                             // values of the inputs at the last step
   std::vector<std::shared_ptr<const std::string>> full_;  // filled chunks, which copies share
   std::string last_;

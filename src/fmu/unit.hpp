@@ -18,7 +18,7 @@ using Notice = std::function<void(const std::string&)>;
 
 constexpr Stamp EPOCH = 1'000'000'000'000'000'000;  ///< stamp of time 0, as in `joint_twin simulate`
 
-constexpr double LARGEST_TIME = 1e9;  ///< largest magnitude of a time [s]
+constexpr double LARGEST_TIME = 1e9;  ///< largest magnitude of a time that an importer may give [s]
 
 inline Stamp stampAt(double time)  ///< stamp of a time [s]
 {

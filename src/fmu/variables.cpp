@@ -183,7 +183,6 @@ void addOutputs(const Parameters& parameters, const std::string& prefix, std::ve
                     true });
   }
 }
-/// Outputs for the state of the drive and for the readings of its sensors.
 std::vector<ScalarOutput> driveOutputs()
 {
   using T = const Twin&;
@@ -227,7 +226,6 @@ std::vector<ScalarOutput> driveOutputs()
   };
 }
 
-/// Outputs of health, assessment and indicators.
 std::vector<ScalarOutput> healthOutputs()
 {
   using T = const Twin&;

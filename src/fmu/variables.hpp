@@ -61,7 +61,7 @@ enum DriveReference : unsigned
   LOAD_TORQUE,
   TEMPERATURE,
   BRAKE,
-  FIRST_FAULT,  ///< severities, one for each FaultKind
+  FIRST_FAULT,  ///< first of the severities, of which each FaultKind has one
   FIRST_OUTPUT = FIRST_FAULT + FAULT_KINDS
 };
 
@@ -90,10 +90,10 @@ FmuVariable timeVariable();
 /// publishing, those that would change sizes or steps, and in an arm also those that the arm determines.
 void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all);
 
-/// All variables of a unit for one drive: time, then the drive.
+/// All variables of a unit for one drive: the time, then the variables of the drive.
 std::vector<FmuVariable> driveVariables(const Parameters& parameters);
 
-/// Index of the place of a kind of fault, counted from the drive's first variable.
+/// Value reference of the place of a kind of fault, counted from the first variable of the drive.
 std::size_t placeReference(std::size_t kind);
 
 /// Token by which a unit detects that its description, library and resources belong together. It follows from the

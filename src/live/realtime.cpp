@@ -31,8 +31,8 @@ std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
 /// Text that says how the user can permit a refused request.
 std::string remedy(const std::string& limits_line, const std::string& capability)
 {
-  return ". To permit it, add this line to /etc/security/limits.conf: '" + userName() + " - " + limits_line +
-         "' and log in again. Or run the node with " + capability + ". The node continues without it";
+  return ". To permit this request, add this line to /etc/security/limits.conf: '" + userName() + " - " + limits_line +
+         "' and log in again. Or run the node with " + capability + ". The node continues without this request";
 }
 
 void applyPriority(int priority, pthread_t loop_thread, RealtimeState& state)
@@ -98,7 +98,7 @@ void applyProcessor(int processor, pthread_t loop_thread, RealtimeState& state)
   state.processor += ", " + wanted + " refused";
   state.refusals.push_back("realtime.processor = " + wanted + " [-] was refused: " + std::strerror(error) +
                            "; this machine has " + std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) +
-                           " processors, counted from 0. The node continues without it");
+                           " processors, counted from 0. The node continues without this request");
 }
 }  // namespace
 

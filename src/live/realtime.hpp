@@ -14,7 +14,7 @@ namespace hjt
 struct RealtimeState
 {
   std::string scheduling;  ///< policy and priority of the loop's thread
-  std::string memory;      ///< whether the memory is locked
+  std::string memory;      ///< whether the memory of the process is locked
   std::string processor;   ///< processor of the loop's thread
   /// Text of each refused request: parameter, reason, and the setting of the system that would permit the request.
   std::vector<std::string> refusals;

@@ -17,7 +17,7 @@ namespace hjt
 struct LiveInput
 {
   TwinInput input;
-  std::size_t joint{};  ///< index of the joint; 0 with one twin
+  std::size_t joint{};  ///< index of the joint that gets the input; 0 with one twin
 
   Stamp stamp() const noexcept { return stampOf(input); }
   const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< the input; null if it is a fault

@@ -27,11 +27,11 @@ constexpr milliseconds SHORT_PAUSE{ 4 };
 constexpr milliseconds MAX_PAUSE{ 50 };
 /// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, so that a loop that is behind catches up.
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
-/// Time after which a cycle begins no further step, so that a slow solver does not delay requests.
+/// Wall clock time after which a cycle begins no further step, so that a slow solver does not delay requests.
 constexpr milliseconds LONGEST_WORK{ 100 };
 /// Largest backward step of the clock that counts as time synchronisation [ns]. The loop then waits for the clock.
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
-/// Longest time that a request waits for the loop.
+/// Longest time for which a request of a user waits for the loop.
 constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
 /// Size of the stack that the loop may use [bytes].
 constexpr std::size_t STACK_SIZE = 256 * 1024;
@@ -303,7 +303,7 @@ void TwinLoop::start(Stamp stamp, Inputs& inputs) noexcept
   released_ = status_.clock;
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
-  // These inputs were due before the twin existed. They act from its first instant and do not count as late.
+  // Inputs that were due before the start of the twin act from its first instant on, and do not count as late.
   for (LiveInput& input : inputs)
   {
     stampOf(input.input) = std::max(input.stamp(), stamp);

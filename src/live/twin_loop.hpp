@@ -24,7 +24,7 @@ namespace hjt
 class LatencyHistogram
 {
 public:
-  static constexpr int BIN_BITS = 3;  ///< number of bits below the leading one that select the bin within the octave
+  static constexpr int BIN_BITS = 3;  ///< number of bits after the leading bit that select the bin within an octave
   static constexpr int BINS_PER_OCTAVE = 1 << BIN_BITS;
   static constexpr int FIRST_OCTAVE = 10;  ///< all values below 2^10 ns are in the first bin
   static constexpr int END_OCTAVE = 34;    ///< all values beyond 2^34 ns are in the last bin
@@ -113,7 +113,7 @@ private:
 enum class LoopState : std::uint8_t
 {
   WAITING_FOR_CLOCK,  ///< the clock has no time yet
-  WAITING_FOR_INPUT,  ///< input.wait_for_first_input: the twin is at rest until a torque arrives
+  WAITING_FOR_INPUT,  ///< with input.wait_for_first_input: the twin is at rest until a torque arrives
   RUNNING
 };
 
@@ -125,7 +125,7 @@ struct LoopTiming
   std::uint64_t missed_deadlines{};  ///< number of cycles whose lateness exceeded realtime.deadline
   Stamp longest_cycle{};             ///< longest cycle in wall clock time [ns]
   Stamp busy{};                      ///< sum of the lengths of all cycles in wall clock time [ns]
-  Stamp elapsed{};                   ///< elapsed wall clock time [ns]
+  Stamp elapsed{};                   ///< wall clock time since the start or reset [ns]
   Stamp simulated{};                 ///< simulated time [ns]
 
   /// Simulated time over wall clock time; 0 at the start [-].
@@ -142,7 +142,7 @@ private:
 
 enum class ClockKind : std::uint8_t
 {
-  RUNNING,  ///< continuous clock: every instant is due at its own time
+  RUNNING,  ///< the system's clock: every instant is due at its own time
   STEPPED   ///< /clock: all instants up to a time on /clock are due when the loop has read this time
 };
 
@@ -160,7 +160,7 @@ struct LoopStatus
   Stamp last_jump{};            ///< size of the clock's last jump; > 0 forwards [ns]
   std::uint64_t resets{};       ///< number of resets that a user requested
   std::uint64_t far_stamps{};   ///< number of inputs refused because their stamps differ from the clock by > FAR_STAMP
-  bool command_seen{};          ///< a motor torque command has arrived since the last start or reset
+  bool command_seen{};          ///< whether a motor torque command has arrived since the last start or reset
   Stamp last_command{};         ///< latest stamp of a motor torque command [ns]
   JointOutputs outputs;
   TwinCounters counters;
@@ -277,10 +277,10 @@ private:
   const Stamp input_delay_;
   const std::chrono::steady_clock::duration shortest_pause_;
   const Stamp deadline_;     ///< realtime.deadline, the largest lateness of an instant [ns]
-  const Stamp step_length_;  ///< length of a step [ns]
+  const Stamp step_length_;  ///< length of a step of the twin [ns]
   const bool wait_for_first_input_;
-  std::size_t waiting_{};  ///< number of inputs of earlier cycles that wait for the start
-  Stamp released_{};       ///< earliest time of the clock at which the present instants were due [ns]
+  std::size_t waiting_{};  ///< number of inputs of earlier cycles that wait for the start of the twin
+  Stamp released_{};       ///< earliest time of the clock at which the instants of this cycle were due [ns]
   Stamp start_stamp_{};    ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;
   LoopStatus status_;

@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Converts a Json to the library's value.
+/// Converts a Json to a value of the JSON library.
 struct JsonWriter
 {
   using Library = OrderedJson;

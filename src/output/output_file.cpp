@@ -13,7 +13,7 @@
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
-// fmt 6 cannot compile a format.
+// Version 6 of fmt cannot compile a format, so it gets the format as text.
 #ifndef FMT_COMPILE
 #define FMT_COMPILE(text) text
 #endif

@@ -19,7 +19,7 @@ enum ExitCode : int
   EXIT_DEPARTS = 3,     ///< the verdict is at least as bad as the level of --fail-on
   EXIT_NOT_JUDGED = 4,  ///< no joint could be judged, or with `--fail-on not-judged` one joint could not
   EXIT_STOPPED = 5,     ///< a protective stop ended the motion of the arm
-  EXIT_BY_SIGNAL = 128  ///< plus the number of the signal
+  EXIT_BY_SIGNAL = 128  ///< a signal ended the process; its number is added
 };
 
 /// Number of the signal that arrived within an InterruptScope; 0 if none arrived.
@@ -47,7 +47,7 @@ private:
   static void catchSignal(Caught& caught, int signal);
 
   const bool is_outer_;
-  std::array<Caught, 3> caught_{};  // signal 0: no signal is caught
+  std::array<Caught, 3> caught_{};  // caught signals; number 0 stands for none
 };
 
 /// Start of the simulated time without a recording: 2001-09-09 01:46:40 UTC, so that stamps are valid ROS times.
@@ -59,14 +59,14 @@ void warn(std::uint64_t count, const std::string& what);
 /// Prints a warning on stderr for each kind of event that a run has counted.
 void warnOf(const TwinCounters& counters);
 
-/// Report on the end of a twin's run, for people and programs.
+/// Report at the end of a twin's run, for people and programs.
 struct RunSummary
 {
   std::string output;  ///< path of the written file
   Stamp begin{};
   std::chrono::steady_clock::time_point started{ std::chrono::steady_clock::now() };
 
-  /// Prints the report (as JSON on stdout if `json`), warns on stderr, and returns the exit code.
+  /// Prints the report on stdout (as JSON if `json`) and warnings on stderr. @returns the exit code.
   int report(const Twin& twin, bool json) const;
 };
 

@@ -53,7 +53,7 @@ struct Watch
   std::function<void(const std::string&)> notice{ [](const std::string&) {} };
 };
 
-/// Thrown if the caller stops a step without a result.
+/// Thrown if the caller ends a function before it has a result.
 struct Stopped
 {
 };

@@ -28,7 +28,7 @@ void printWrapped(const std::string& text, std::size_t indent);
 
 constexpr std::size_t NUMBER_WIDTH = 14;
 
-/// Prints rows under headings ("torque [N.m]") in aligned columns of at least this width.
+/// Prints rows under headings ("torque [N.m]") in aligned columns of at least `least_width` characters.
 void printTable(const std::vector<std::string>& headings, const std::vector<std::vector<std::string>>& rows,
                 std::size_t least_width = NUMBER_WIDTH);
 
@@ -37,7 +37,7 @@ template <class Row>
 struct Column
 {
   std::string key;                        ///< key in documents and files; empty: the column is not in them
-  std::function<Json(const Row&)> value;  ///< member of the row, or a function of it
+  std::function<Json(const Row&)> value;  ///< member of a row, or function that computes the value from a row
   std::string heading{};                  ///< heading with the unit ("torque [N.m]"); empty: not shown to people
 };
 
@@ -64,9 +64,9 @@ public:
   }
 
   bool empty() const { return cells_.empty(); }
-  Json rows() const;                                         ///< one object for each row
-  Json columns() const;                                      ///< one array for each column
-  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< columns of at least this width
+  Json rows() const;                                         ///< the table as one object for each row
+  Json columns() const;                                      ///< the table as one array for each column
+  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< prints columns of at least this width
 
 private:
   std::vector<std::string> keys_;
@@ -132,8 +132,8 @@ void writeTable(const std::string& path, const std::vector<Column<Row>>& columns
 
 struct ReportLine
 {
-  std::string key;    ///< key in the document, with dots for members of members; empty: only for people
-  std::string label;  ///< label for people; empty: only in the document
+  std::string key;    ///< key in the document ("peak.torque" is a member of "peak"); empty: only for people
+  std::string label;  ///< label that people see; empty: the value is only in the document
   Json value;
   std::string unit{};
 };

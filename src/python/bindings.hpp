@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace py = pybind11;
 
-// Parts of the module, in the order in which their types depend on each other.
+// Functions that add the parts of the module. A part may use the types of the parts before it.
 void bindParameters(py::module& module);
 void bindHealth(py::module& module);
 void bindToothValues(py::module& module);
@@ -125,7 +125,8 @@ private:
   InterruptCheck check_;
 };
 
-/// Calls `work` without the interpreter's lock and returns its result. An `Interrupted` becomes Python's error.
+/// Calls `work` without the interpreter's lock and returns its result. If it throws `Interrupted`, Python's error is
+/// thrown.
 template <class Work>
 auto withoutLock(const Work& work)
 {
@@ -180,7 +181,7 @@ public:
   /// `what`: name of the object in the error text.
   explicit InUse(const char* what) : what_(what) {}
 
-  /// @throws std::runtime_error while the object is in use.
+  /// Checks that the object is free. @throws std::runtime_error while it is in use.
   void refuse() const
   {
     if (used_)
@@ -189,7 +190,7 @@ public:
     }
   }
 
-  /// @throws std::runtime_error if the object is already in use.
+  /// Marks the object as in use. @throws std::runtime_error if it is already in use.
   [[nodiscard]] Hold hold()
   {
     refuse();

@@ -8,7 +8,7 @@ namespace
 {
 void bindErrors(py::module& module)
 {
-  // The error that is registered last is tried first.
+  // pybind11 tries the errors in reverse order of registration, so derived ones come after InputError.
   const auto input = py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   py::register_exception<ParameterError>(module, "ParameterError", input.ptr());
   py::register_exception<NotConverged>(module, "NotConverged", PyExc_RuntimeError);

@@ -51,7 +51,7 @@ ParameterValue parameterValue(const py::handle& value, const std::string& key)
   }
   if (PyIndex_Check(value.ptr()))
   {
-    // A numpy scalar is not a Python int.
+    // Converts numpy's integers too, which are not of Python's type int.
     const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (whole)
     {

@@ -16,7 +16,6 @@ namespace hjt
 {
 namespace
 {
-/// Description of a parameter, whose value may have any type.
 struct Field
 {
   std::string key;
@@ -97,7 +96,7 @@ void visitValues(const Parameters& parameters, const Take& take)
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
-                // Numbers have (unit, value, range, meaning), all other fields (value, meaning).
+                // A number is described by (unit, value, range, meaning), any other field by (value, meaning).
                 if constexpr (sizeof...(rest) == 0)
                 {
                   take(key, first);
@@ -173,7 +172,8 @@ void bindFaults(py::module& module)
 
   auto kind = py::class_<FaultDescription>(module, "FaultKind", "Description of a kind of fault.");
   kind.def_property_readonly(
-          "name", [](const FaultDescription& self) { return self.name; }, "name for Fault and the tool's --fault")
+          "name", [](const FaultDescription& self) { return self.name; },
+          "name of the kind, for Fault and for the option --fault")
       .def_property_readonly(
           "place", [](const FaultDescription& self) { return placeName(self.place); },
           "kind of the place: tooth, segment, lobe, ball, or - without places")

@@ -72,7 +72,6 @@ std::size_t stressPlace(const std::string& name)
   throw InputError("place = '" + name + "' must be one of " + names);
 }
 
-/// Checks that all values are finite. @throws InputError.
 void requireFinite(const char* name, const std::vector<double>& values)
 {
   for (const double value : values)
@@ -270,8 +269,10 @@ void bindInsertion(py::module& module)
                     "number of teeth in contact with the wave generator [-]")
       .def_readonly("tension_min", &InsertionResult::tension_min, "least tension of the rim [N]")
       .def_readonly("tension_max", &InsertionResult::tension_max, "largest tension of the rim [N]")
-      .def_readonly("radius_major_axis", &InsertionResult::radius_major_axis, "radius of tooth 0 [m]")
-      .def_readonly("radius_minor_axis", &InsertionResult::radius_minor_axis, "radius of tooth N/4 [m]")
+      .def_readonly("radius_major_axis", &InsertionResult::radius_major_axis,
+                    "distance of tooth 0 from the axis of the drive [m]")
+      .def_readonly("radius_minor_axis", &InsertionResult::radius_minor_axis,
+                    "distance of tooth N/4, of N teeth, from the axis of the drive [m]")
       .def_readonly("bending_force_max", &InsertionResult::bending_force_max, "[N]")
       .def_readonly("teeth", &InsertionResult::teeth, "ToothTable");
   addText(result);
@@ -331,7 +332,7 @@ void bindDesign(py::module& module)
       [](const Configuration& parameters)
       { return withoutLock([&, values = parameters.values()] { return gearWarnings(values); }); },
       py::arg("parameters"),
-      "Warnings of inconsistent values of the gear, as the tool prints them: list of str, each with key, value and "
+      "Returns the tool's warnings about inconsistent values of the gear: list of str, each with key, value and "
       "expected value.");
 }
 

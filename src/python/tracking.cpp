@@ -22,7 +22,7 @@ using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 class Recorded
 {
 public:
-  /// @throws InputError if the column does not have `rows` values.
+  /// Takes the values of a column. @throws InputError if their number is not `rows`.
   Recorded(const char* name, const std::optional<Values>& values, py::ssize_t rows) : values_(values)
   {
     if (values_ && (values_->ndim() != 1 || values_->size() != rows))

@@ -15,7 +15,7 @@ namespace
 {
 constexpr double LARGEST_TIME = 9e9;  // limit of a stamp [s]
 
-/// Checks a stamp. @throws InputError beyond +-MAX_STAMP.
+/// Checks a stamp. @throws InputError if its magnitude exceeds MAX_STAMP.
 Stamp checked(Stamp stamp)
 {
   if (!isStamp(stamp))
@@ -26,7 +26,7 @@ Stamp checked(Stamp stamp)
   return stamp;
 }
 
-/// Stamp of an input: the given one, or the twin's next instant.
+/// Stamp of an input: the given stamp or, without one, the next instant of the twin.
 Stamp stampOf(const Twin& twin, const std::optional<Stamp>& stamp)
 {
   return checked(stamp.value_or(twin.stamp()));

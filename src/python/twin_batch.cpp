@@ -174,7 +174,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // blocks grow until one lasts this long
 constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of the first block, summed over all twins
-constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once: about 10 us on the surface
+constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once (about 10 us on the surface)
 
 using Twins = std::vector<std::pair<py::object, TwinObject*>>;
 
@@ -205,7 +205,7 @@ public:
     }
   }
 
-  /// @throws InputError, Python's TypeError.
+  /// Makes the twins of the batch. @throws InputError, Python's TypeError.
   Twins build(const std::optional<std::string>& cache, const py::object& progress) const
   {
     SurfaceSourceOf source(cache, progress, items_.size());
@@ -295,7 +295,7 @@ std::size_t threadCount(const std::optional<int>& threads, std::size_t twins)
   return std::min<std::size_t>(threads ? static_cast<unsigned>(*threads) : processors(), twins);
 }
 
-/// Twins that step together, with the threads that they share.
+/// Twins that step together, and the threads that step them.
 class TwinBatch
 {
 public:

@@ -80,7 +80,7 @@ public:
     {
       return;
     }
-    // Accepts truth values, whole and real numbers and their objects, but no times and no complex numbers.
+    // Accepts truth values, whole numbers and real numbers, also as Python objects. Refuses times and complex numbers.
     const py::array array = py::array::ensure(given);
     const bool is_real = array && std::string("biufO").find(array.dtype().kind()) != std::string::npos;
     const py::handle taken = is_real ? py::handle(array) : py::handle();
@@ -167,7 +167,6 @@ private:
   py::ssize_t step_stride_{};
 };
 
-/// Inputs of a run from Python: None, numbers or arrays.
 struct GivenInputs
 {
   py::object motor_torque = py::none();
@@ -420,6 +419,5 @@ private:
   InUse in_use_{ "twin" };
 };
 
-/// Counts by name: dict of str to int.
 py::dict namedCounters(const TwinCounters& counters);
 }  // namespace hjt

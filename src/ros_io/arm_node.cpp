@@ -171,7 +171,7 @@ constexpr const char* SAFETY_MODE_SUM = "5da08725a63d4237bad689481131a84b";
 constexpr std::uint8_t NORMAL = 1;
 constexpr std::uint8_t PROTECTIVE_STOP = 3;
 
-/// Message of a mode, whose content is one byte.
+/// Message with a mode of the robot, which is one byte.
 topic_tools::ShapeShifter makeMode(const char* sum, const char* type, const char* definition, std::uint8_t mode)
 {
   topic_tools::ShapeShifter message;
@@ -253,7 +253,7 @@ void ArmDiagnostics::look()
   tasks_.look();
 }
 
-/// Names of the joints with recent events; empty: none.
+/// Names of the joints with recent events; empty if no joint has any.
 std::string ArmDiagnostics::namesOf(const std::vector<RecentEvents>& events) const
 {
   std::vector<std::string> names;

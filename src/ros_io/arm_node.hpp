@@ -45,7 +45,7 @@ struct JointTolerance
   double velocity{ HUGE_VAL };  ///< largest deviation of the speed [rad/s]
 };
 
-/// Tolerances of a commanded motion.
+/// Goal of a commanded motion: tolerances that the joints must keep.
 struct ArmGoal
 {
   std::uint64_t number{};            ///< number of the command; later commands have larger numbers
@@ -71,7 +71,7 @@ struct GoalReport
   std::uint64_t number{};
   GoalState state{};
   Stamp stamp{};                    ///< time of `wanted` and `actual` [ns]
-  std::size_t joint{};              ///< joint that exceeds its tolerance
+  std::size_t joint{};              ///< index of the first joint that exceeds its tolerance
   bool is_speed{};                  ///< whether the speed of `joint` exceeds its tolerance; false: the angle does
   double error{};                   ///< deviation of `joint` from its set point [rad], [rad/s]
   double tolerance{};               ///< tolerance of `joint` [rad], [rad/s]
@@ -104,7 +104,7 @@ public:
     report_.state = report_.state == GoalState::UNDER_WAY ? GoalState::FORGOTTEN : report_.state;
   }
 
-  /// Updates the report. Must be called at every step of the arm.
+  /// Updates the report on the goal. Must be called at every step of the arm.
   void look(MovingArm& arm) noexcept
   {
     if (report_.state != GoalState::UNDER_WAY || arm.twin().stamp() % period_ != 0)
@@ -162,7 +162,7 @@ private:
     return false;
   }
 
-  Stamp period_;  // period of the states [ns]
+  Stamp period_;  // period of the controller's states [ns]
   ArmGoal goal_;
   GoalReport report_;
 };
@@ -177,10 +177,9 @@ public:
   /// For the loop: fills the due messages that have subscribers. It neither allocates nor locks.
   void offer(MovingArm& arm) noexcept;
 
-  /// For the loop: does the same as OutputPublishers::finishCycle.
+  /// For the loop: as OutputPublishers::finishCycle, for the topics of all drives and of the arm.
   Stamp finishCycle(Stamp instant) noexcept;
 
-  /// Number of messages that could not be published.
   std::uint64_t dropped() const noexcept;
 
 private:
@@ -235,7 +234,7 @@ private:
   ros::WallTimer timer_;
 };
 
-/// Passes the newest value from callbacks to a loop that neither waits nor frees memory.
+/// Passes the newest value from callbacks to a loop. The loop neither waits nor frees memory.
 template <class Value>
 class Handover
 {
@@ -306,7 +305,6 @@ public:
   /// Begins a trajectory, which replaces the present motion. Without points the arm comes to rest. `goal` receives the
   /// number of the command. Thread-safe. @returns the reason of a refusal; empty if the trajectory is accepted.
   std::string command(const trajectory_msgs::JointTrajectory& message, ArmGoal& goal);
-  /// Report on the last command that the loop has taken.
   GoalReport report() const { return advance_.report.read(); }
   const ArmDescription& description() const noexcept { return description_; }
   /// Reason of a protective stop; empty without a stop. Thread-safe.
@@ -321,7 +319,7 @@ private:
     MOVES
   };
 
-  /// The object that the loop advances.
+  /// The arm, as the loop advances it.
   class Advance : public Advanced
   {
   public:
@@ -338,7 +336,7 @@ private:
     Handover<ArmWrench> wrench;
     Handover<Payload> payload;
     TryLockValue<std::vector<JointMotion>> shown;      ///< present set points
-    TryLockValue<std::vector<TwinCounters>> counters;  ///< counts of each drive
+    TryLockValue<std::vector<TwinCounters>> counters;  ///< counted events of each drive
     TryLockValue<GoalReport> report;
     std::atomic<const char*> stop_reason{ nullptr };  ///< reason of a protective stop; null: no stop
     std::atomic<std::size_t> stopped_joint{};         ///< joint of the protective stop

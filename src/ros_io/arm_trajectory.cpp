@@ -116,7 +116,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
       const double limit = arm.joints[i].speed_limit;
       const double speed =
           greatestSpeed(points[k - 1].joints[i], points[k].joints[i], points[k].time - points[k - 1].time);
-      // This form of the comparison rejects NaN.
+      // With this form of the comparison, a speed that is NaN is an error.
       if (limit > 0.0 && !(speed <= limit * (1.0 + SPEED_TOLERANCE)))
       {
         return arm.joints[i].name + " would reach " + roundedText(speed, 3) + " rad/s between the set point at " +

@@ -17,9 +17,9 @@ namespace hjt
 std::string readTrajectory(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm,
                            const std::vector<JointMotion>& present, double delay, std::vector<ArmSetPoint>& points);
 
-/// Error in the names of the joints; empty if they are valid.
+/// Error in the joint names of a trajectory; empty if the names are valid.
 std::string jointErrors(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm);
 
-/// Set points from the present state to rest, for all joints at once.
+/// Set points that bring all joints from the present state to rest, at the same time.
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present);
 }  // namespace hjt

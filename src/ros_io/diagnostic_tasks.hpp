@@ -22,7 +22,6 @@
 
 namespace hjt
 {
-/// Level and text of a diagnostic task.
 struct DiagnosticVerdict
 {
   std::uint8_t level{};
@@ -49,7 +48,7 @@ inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVer
 class DiagnosticTasks
 {
 public:
-  static constexpr double LOOK_PERIOD = 0.2;  ///< period for calls of `look` [s]
+  static constexpr double LOOK_PERIOD = 0.2;  ///< time between two calls of `look` [s]
 
   /// `name`: name of the twin, which precedes the name of each task.
   DiagnosticTasks(const std::string& name, const std::string& hardware_id)
@@ -71,7 +70,7 @@ public:
                        {} });
   }
 
-  /// Judges every task, and reports when due.
+  /// Judges every task, and publishes a report if one is due.
   void look()
   {
     bool changed = false;
@@ -114,7 +113,7 @@ private:
     publisher_.publish(message);
   }
 
-  static constexpr unsigned QUEUE_SIZE = 20;  // all joints of an arm report at once
+  static constexpr unsigned QUEUE_SIZE = 20;  // messages; all joints of an arm report at once
 
   const std::string name_;
   const std::string hardware_id_;

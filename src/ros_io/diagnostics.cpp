@@ -206,7 +206,7 @@ void Diagnostics::reportInput(DiagnosticStatusWrapper& status) const
   status.add("Too large, refused", snapshot_.messages.too_large);
   status.add("Stamp far from the clock, refused", loop.far_stamps);
   status.add("Faults beyond the largest number, refused", counters.faults.no_room);
-  status.add("Too late for their stamp", counters.input.late + counters.faults.late);
+  status.add("Inputs too late for their stamps", counters.input.late + counters.faults.late);
   status.add("Dropped, queue full", counters.input.overflow + snapshot_.overflow);
   status.add("Steps with motor torque clamped", counters.torque_clamped);
   status.add("Steps with load torque clamped", counters.load_clamped);

@@ -24,8 +24,7 @@ std::string verdictText(const Assessment& assessment);
 /// Adds cause, evidence and windows of an assessment to the diagnostics.
 void addAssessment(const Assessment& assessment, diagnostic_updater::DiagnosticStatusWrapper& status);
 
-/// Publishes the state of drive, input, timing and health on /diagnostics, about once a second in wall clock time and
-/// when a level changes.
+/// Publishes the state of drive, input, timing and health of a twin on /diagnostics.
 class Diagnostics
 {
 public:

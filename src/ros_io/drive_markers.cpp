@@ -20,11 +20,11 @@ using Point = Eigen::Vector2d;
 
 constexpr double LINE_WIDTH = 0.2e-3;   // width of a line [m]
 constexpr double TEXT_HEIGHT = 1.8e-3;  // height of a letter [m]
-constexpr double ARROW_WIDTH = 0.2e-3;  // width of the shaft [m]
-constexpr double ARROW_HEAD = 0.7e-3;   // length and width of the head [m]
+constexpr double ARROW_WIDTH = 0.2e-3;  // width of an arrow's shaft [m]
+constexpr double ARROW_HEAD = 0.7e-3;   // length and width of an arrow's head [m]
 constexpr double MIN_ARROW = 0.2e-3;    // least length of a drawn arrow [m]
-constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at tip and root, in pitches
-constexpr double ROOT_SHARE = 0.28;
+constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at its tip, in pitches
+constexpr double ROOT_SHARE = 0.28;     // half width of a drawn tooth at its root, in pitches
 constexpr double RING_HEIGHTS = 2.0;    // height of the circular spline behind its roots, in tooth heights
 constexpr double ROOT_CLEARANCE = 1.2;  // depth of the circular spline's spaces, in tooth heights
 constexpr int ELLIPSE_POINTS = 180;
@@ -47,7 +47,7 @@ const std_msgs::ColorRGBA ORANGE = color(0.95F, 0.55F, 0.10F);
 const std_msgs::ColorRGBA BLUE = color(0.20F, 0.45F, 0.90F);
 const std_msgs::ColorRGBA BLACK = color(0.05F, 0.05F, 0.05F);
 
-/// Colour between steel at 0 and `full` at a share of 1 or more.
+/// Colour for a share: that of steel at 0, `full` at 1 or more, and a mixture between.
 std_msgs::ColorRGBA shareColor(double of, const std_msgs::ColorRGBA& full)
 {
   const auto share = static_cast<float>(std::min(1.0, of));
@@ -92,7 +92,7 @@ void addQuad(Marker& marker, const Point& a, const Point& b, const Point& c, con
   addTriangle(marker, a, c, d, made);
 }
 
-/// Adds an arrow that ends at `tip`; `along`: its length and direction [m].
+/// Adds an arrow that ends at `tip`. `along`: length and direction of the arrow [m].
 void addArrow(Marker& marker, const Point& tip, const Point& along)
 {
   const double length = along.norm();
@@ -118,7 +118,7 @@ Point direction(double angle)
 struct Stretch
 {
   double radius;  // radius of the circle [m]
-  double factor;  // factor of the distances [-]
+  double factor;  // factor by which distances from the circle are stretched [-]
 
   Point operator()(const Point& at) const
   {
@@ -269,7 +269,7 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
                     std::move(teeth.flexspline), std::move(circular),
                     std::move(teeth.pressing),   std::move(teeth.leading),
                     std::move(teeth.trailing),   std::move(text) };
-  // rviz reports a list of triangles without points as an error.
+  // Removes empty markers: rviz reports a list of triangles without points as an error.
   for (Marker& marker : array.markers)
   {
     marker.action = marker.points.empty() && marker.text.empty() ? Marker::DELETE : Marker::ADD;

@@ -17,8 +17,8 @@ struct MarkerStyle
 {
   std::string frame;    ///< frame of the markers, whose z axis is the drive's axis
   double exaggeration;  ///< factor by which radial distances from the middle of the engaged teeth are drawn larger [-]
-  double arrow_length;  ///< length of an arrow per force [m/N]
-  double full_force;    ///< force of a tooth with full colour [N]
+  double arrow_length;  ///< length of an arrow / force that it shows [m/N]
+  double full_force;    ///< force from which a tooth has the full colour [N]
 };
 
 /// Markers for rviz of the drive, seen along its axis, from one message of contact forces.
@@ -56,7 +56,7 @@ private:
   GearParameters gear_;
   double flank_angle_;
   FlexsplineStress stress_;
-  double full_stress_;  // nominal stress with full colour: the endurance limit at the notch [Pa]
+  double full_stress_;  // nominal stress at which the rim has the full colour: the endurance limit at the notch [Pa]
   MarkerStyle style_;
   double fixed_radius_;  // radius that the stretching does not change [m]
 };

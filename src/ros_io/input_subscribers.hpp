@@ -132,10 +132,10 @@ private:
 /// Numbers of refused messages since the start of the node.
 struct MessageCounters
 {
-  std::uint64_t unknown_joint{};   ///< messages that name neither the joint nor, for a command, its motor
-  std::uint64_t missing_effort{};  ///< messages that name the joint without an effort
-  std::uint64_t refused_fault{};   ///< faults of unknown kind, or with a severity or place out of range
-  std::uint64_t too_large{};       ///< messages with more bytes than InputTopics::MAX_BYTES
+  std::uint64_t unknown_joint{};   ///< number of messages that name neither the joint nor, for a command, its motor
+  std::uint64_t missing_effort{};  ///< number of messages that name the joint without an effort
+  std::uint64_t refused_fault{};   ///< number of faults of unknown kind, or with a severity or place out of range
+  std::uint64_t too_large{};       ///< number of messages of more than InputTopics::MAX_BYTES
 };
 
 /// Subscribes to the topics of torques and faults, and puts their content with its stamp into the inbox. A message

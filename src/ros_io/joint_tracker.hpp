@@ -43,8 +43,8 @@ public:
   enum class Row
   {
     TAKEN,
-    FIRST,    ///< the first row, which sets the zero
-    MOVED,    ///< the clock of the robot or of this machine has been set; there is a new zero
+    FIRST,    ///< the first row, which sets the zero of time
+    MOVED,    ///< the clock of the robot or of this machine has been set; this row sets a new zero of time
     REFUSED,  ///< far from the clock of the preceding rows; a second such row in succession counts as MOVED
   };
 
@@ -80,8 +80,8 @@ private:
   static bool agree(Stamp a, Stamp b) { return std::abs(a - b) <= FAR_STAMP; }
 
   std::optional<Stamp> zero_;            // stamp of the row that sets the zero [ns]
-  Stamp offset_{};                       // reception minus stamp of the last accepted row [ns]
-  std::optional<Stamp> refused_offset_;  // reception minus stamp of the last row, if it was refused [ns]
+  Stamp offset_{};                       // time of reception - stamp of the last accepted row [ns]
+  std::optional<Stamp> refused_offset_;  // time of reception - stamp of the last row, if this row was refused [ns]
 };
 
 /// State of the telemetry topic of all joints of a robot. The node's mutex protects all members except `too_large`.
@@ -90,7 +90,7 @@ struct TelemetryStream
   std::string topic;
   TelemetryClock clock;
   StreamTiming timing;
-  Stamp last_received{};               ///< time of the last reception [ns]
+  Stamp last_received{};               ///< time of reception of the last message [ns]
   std::uint64_t far_stamps{};          ///< number of messages refused because of their stamps
   std::uint64_t clock_changes{};       ///< number of restarts because the clock of the stamps had changed
   std::uint64_t other_temperatures{};  ///< number of temperatures whose frame_id is not a joint
@@ -124,7 +124,7 @@ public:
   void send() { publisher_.publish(message_); }
 
 private:
-  // Comparisons arrive in bursts.
+  // Messages of Comparison are published in bursts, so they need a long queue.
   static constexpr std::uint32_t QUEUE_SIZE =
       std::is_same_v<Message, harmonic_joint_twin::Comparison> ? InputTopics::QUEUE_SIZE : 100;
   static constexpr bool IS_LATCHED = std::is_same_v<Message, harmonic_joint_twin::Verdict>;
@@ -173,13 +173,12 @@ public:
 
   VerdictWatch& verdict() { return verdict_; }
   bool isTouched() const { return tracker_.evidence().isTouched(); }
-  /// Reads a message on the topic of the load.
   void receiveLoad(const sensor_msgs::JointState& message, Stamp received);
 
-  /// Reads a message for this joint on the topic of temperatures.
+  /// Reads a message with the temperature of this joint.
   void receiveTemperature(const sensor_msgs::Temperature& message, Stamp received);
 
-  /// Judges, reports and logs changes of the state.
+  /// Publishes the verdict, reports diagnostics, and logs changes of the state.
   void look(const ros::WallTime& now);
 
 private:
@@ -232,10 +231,10 @@ private:
   const JointNames names_;
   const bool takes_arm_load_;
   const ThermalModel thermal_model_;
-  const double ratio_;                          // motor angle over output angle
+  const double ratio_;                          // motor angle / output angle [-]
   const double greatest_speed_;                 // largest possible speed of the joint [rad/s]
   const double current_per_effort_;             // current over effort [-], [A/(N.m)]
-  static constexpr std::uint64_t SILENT = 100;  // number of messages without effort, after which the current is 0
+  static constexpr std::uint64_t SILENT = 100;  // first messages without effort after which the current is 0
   std::uint64_t without_effort_{};              // number of successive messages without an effort
   bool has_effort_{};                           // whether a message has had an effort
   double arm_friction_{ 1.0 };

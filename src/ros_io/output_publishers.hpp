@@ -150,7 +150,7 @@ private:
   std::atomic<int> subscribers_{ 0 };
   std::atomic<std::uint64_t> computed_{ 0 };
   std::atomic<std::uint64_t> dropped_{ 0 };
-  ros::Publisher publisher_;  // last, because its callbacks use the other members
+  ros::Publisher publisher_;  // last member, because its callbacks use the other members
 };
 
 /// All topics of the twin. The loop fills due messages that have subscribers, and a thread sends them.
@@ -182,7 +182,7 @@ public:
   }
 
   /// For the loop: starts sending the filled messages. @returns the next instant with a message for a subscriber [ns].
-  /// It does not allocate and takes no lock that is held for long.
+  /// The call does not allocate and takes no lock that is held for long.
   Stamp finishCycle(Stamp instant) noexcept
   {
     if (isHeard())
@@ -192,14 +192,13 @@ public:
     return outputs_.nextDue(instant);
   }
 
-  /// Text of the last published faults.
   std::string activeFaults() const
   {
     const std::lock_guard<std::mutex> lock(text_mutex_);
     return active_faults_;
   }
 
-  /// Counts of the channels, in the order of CHANNELS.
+  /// Counted messages of the channels, in the order of CHANNELS.
   std::array<ChannelCounters, CHANNEL_COUNT> counters() const noexcept
   {
     return outputs_.collect([](const auto& channel, const auto& sink) { return sink.counters(channel.name); });
@@ -215,7 +214,7 @@ private:
     FaultList faults;
   };
 
-  /// Offers the list of faults once after each change.
+  /// Offers the list of active faults to the publishing thread, once after each change.
   void offerFaults(const Twin& twin) noexcept
   {
     const FaultList& faults = twin.activeFaults();
@@ -262,7 +261,7 @@ private:
   std::uint64_t offered_faults_;  // version of the last offered list of faults
   mutable std::mutex text_mutex_;
   std::string active_faults_;
-  PublisherThread thread_;  // last, because it uses the other members
+  PublisherThread thread_;  // last member, because the thread uses the other members
 };
 
 /// Publishes the loop's timing once a second in wall clock time, if ~timing has subscribers.

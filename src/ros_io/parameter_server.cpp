@@ -23,7 +23,7 @@ using XmlRpc::XmlRpcValue;
 /// Name of a parameter of the node that is not a parameter of the twin: the period of /diagnostics.
 constexpr const char* DIAGNOSTIC_PERIOD = "diagnostic_period";
 
-// XmlRpcValue converts only non-const references.
+// The conversions of XmlRpcValue need a reference that is not const.
 template <class T>
 T valueOf(XmlRpcValue& value)
 {

@@ -55,6 +55,6 @@ public:
 
 private:
   bool is_cleared_ = false;
-  std::set<std::string> given_;  // keys on the command line
+  std::set<std::string> given_;  // keys that the command line sets
 };
 }  // namespace hjt

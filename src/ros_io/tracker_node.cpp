@@ -23,7 +23,7 @@ namespace hjt
 {
 namespace
 {
-/// Time between two verdicts [s].
+/// Time between two verdicts on the joints [s].
 constexpr double VERDICT_PERIOD = 1.0;
 /// Time after the start at which the node warns if no message has arrived [s].
 constexpr double MESSAGE_PATIENCE = 10.0;
@@ -54,7 +54,7 @@ std::vector<std::string> publishedJointStates()
   return names;
 }
 
-/// Period of the check of the telemetry [s].
+/// Time between two checks of the telemetry [s].
 constexpr double FIT_PERIOD = 1.0;
 }  // namespace
 
@@ -420,7 +420,7 @@ void TrackerNode::lookAtFit()
   }
 }
 
-/// Adds the rows to the ranking of arms.
+/// Adds the rows to the ranking of arm types, which checks the type of this arm.
 void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 {
   if (!arm_)

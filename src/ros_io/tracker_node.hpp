@@ -84,7 +84,7 @@ private:
   const double repeat_tolerance_;  // comparison.repeat_tolerance [-]
   ros::WallTime next_verdict_;
   double next_fit_{};            // time of the next check of the telemetry [s]
-  std::vector<MotionRow> rows_;  // rows of the joints in the present message
+  std::vector<MotionRow> rows_;  // row of each joint in the present message
   std::vector<UnfoldedAngle> angles_;
   bool has_efforts_{};  // whether a row has had an effort
   double last_time_{};  // time of the last row [s]

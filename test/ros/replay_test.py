@@ -102,7 +102,8 @@ class Replay(unittest.TestCase):
         with rosbag.Bag(self.live) as bag:
             statuses = [status for _, array, _ in bag.read_messages(["/diagnostics"]) for status in array.status
                         if status.name == "joint_twin: Input" and status.values]
-        late = {pair.value for status in statuses for pair in status.values if pair.key == "Too late for their stamp"}
+        late = {pair.value for status in statuses for pair in status.values
+                if pair.key == "Inputs too late for their stamps"}
         self.assertEqual(late, {"0"})
 
     def test_an_interrupt_leaves_a_bag_that_can_be_read(self):

@@ -95,7 +95,7 @@ class SimTime(unittest.TestCase):
         for message in self.states.messages():
             acts = message.header.stamp.to_nsec() > command_stamp  # in the step that ends at the message's stamp
             self.assertEqual(message.effort[0], 0.25 if acts else 0.0, message.header.stamp)
-        self.assertEqual(self.diagnostics.number("Input", "Too late for their stamp"), 0)
+        self.assertEqual(self.diagnostics.number("Input", "Inputs too late for their stamps"), 0)
 
     def test_4_a_twin_that_waits_starts_at_the_stamp_of_the_first_input(self):
         self.assertEqual(self.waiting_states.messages(), [])

@@ -19,14 +19,13 @@ namespace hjt
 {
 /// One twin, or the twins of an arm, as hardware of ros_control: states and effort commands of the joints.
 ///
-///   position  joint angle by the encoder at the output [rad]
-///   velocity  joint speed: speed by the encoder at the motor over the ratio [rad/s]
-///   effort    torque of the motor at its shaft: the command, and the drive's estimate from the current [N.m]
+///   position  joint angle from the encoder at the output [rad]
+///   velocity  joint speed: speed from the encoder at the motor / ratio [rad/s]
+///   effort    torque of the motor at its shaft: as a command, and as the drive estimates it from the current [N.m]
 ///
-/// Time is the time of the control loop. `read` advances the twin to its time, over any interval. A command of `write`
-/// acts from the time of that `write`. The first `read` starts the twin at rest, and so does a `read` whose time goes
-/// back. The first `write` after a start releases engaged brakes. After construction only the base class throws or
-/// allocates.
+/// The control loop gives the time. `read` advances the twin to its argument `time`. A command of `write` acts from the
+/// argument `time` of this `write` on. The first `read`, and a `read` whose time goes back, start the twin at rest. The
+/// first `write` after a start releases engaged brakes. After construction only the base class throws or allocates.
 class TwinHardware : public hardware_interface::RobotHW
 {
 public:
@@ -45,7 +44,7 @@ public:
   {
   }
 
-  TwinHardware(const TwinHardware&) = delete;  // the handles point into this object
+  TwinHardware(const TwinHardware&) = delete;  // because the handles of ros_control point into this object
   TwinHardware& operator=(const TwinHardware&) = delete;
 
   void read(const ros::Time& time, const ros::Duration& /*period*/) override
@@ -88,7 +87,7 @@ private:
   {
     std::string name;
     Twin& twin;
-    double start_angle;  // [rad]
+    double start_angle;  // joint angle at the start of the twin [rad]
     double position{};
     double velocity{};
     double effort{};

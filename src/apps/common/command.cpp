@@ -34,13 +34,11 @@ struct CommandNode
 
 namespace
 {
-/// Error in the command line, with a text for the user.
 struct UsageError : std::runtime_error
 {
   using std::runtime_error::runtime_error;
 };
 
-/// Parsed command line.
 struct Request
 {
   const CommandNode* command;
@@ -198,7 +196,7 @@ void addValues(Option& option, const std::string& text)
          " missing");
 }
 
-/// Semantics of an option with up to `most` values after its name.
+/// Description for Boost of an option with up to `most` values after its name.
 class Values : public po::typed_value<Words>
 {
 public:
@@ -324,7 +322,7 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
 /// Parses the words after the program's name into the fields of the chosen command. @throws UsageError.
 Request parseWords(CommandNode& command, const Words& words)
 {
-  // Options of a command with subcommands have no values.
+  // Options of a command with subcommands have no values, so its first word without a dash is a subcommand.
   const auto end = std::find_if(words.begin(), words.end(),
                                 [&](const std::string& word)
                                 { return !command.subcommands.empty() && (word.empty() || word[0] != '-'); });

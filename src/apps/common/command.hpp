@@ -22,7 +22,7 @@ enum class Subject
   DATA_SET
 };
 
-/// A subcommand of the tool. A static object of this type, at the end of the file with its code, adds the subcommand.
+/// A subcommand of the tool. A static object of this type, at the end of the subcommand's file, adds it to the tool.
 /// "life age" is the subcommand `age` of the subcommand `life`.
 class Subcommand
 {
@@ -73,7 +73,6 @@ public:
   /// Parses the command line. If this prints help, version or an error, the process ends. @returns the exit code then.
   std::optional<int> parse(int argc, char** argv);
 
-  /// Runs the chosen subcommand. @returns its exit code.
   int run() const { return run_(); }
 
 private:

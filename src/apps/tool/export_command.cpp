@@ -45,14 +45,14 @@ struct ExportedJoint
   double damping{};             ///< slope of the straight line through the friction over the speed [N.m.s/rad]
   double friction_deviation{};  ///< largest deviation of the twin's friction from the straight line [N.m]
   double armature{};            ///< inertia of motor and wave generator at the joint [kg.m^2]
-  double stiffness{};           ///< series stiffness: secant between plus and minus the rated torque [N.m/rad]
+  double stiffness{};           ///< stiffness of the gear: secant between plus and minus the rated torque [N.m/rad]
   double hysteresis{};          ///< dry friction parallel to the stiffness: half the height of the torsion loop [N.m]
   double inertia{};             ///< inertia of circular spline and load [kg.m^2]
   double effort{};              ///< largest torque [N.m]
   double velocity{};            ///< largest speed [rad/s]
 };
 
-/// Fits a straight line to the friction without load over the speeds of the joint.
+/// Fits a straight line to the twin's friction without load over the speed of the joint.
 void fitFriction(const Parameters& parameters, ExportedJoint& joint)
 {
   constexpr int SPEEDS = 20;

@@ -69,14 +69,13 @@ std::string yamlValue(const ParameterValue& value)
   return number ? rounded(*number) : valueText(value);
 }
 
-/// Meaning and unit of every parameter.
 std::map<std::string, std::string> meanings(const Parameters& parameters)
 {
   std::map<std::string, std::string> texts;
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto&... rest)
               {
-                if constexpr (sizeof...(rest) == 3)  // unit; value, range, meaning
+                if constexpr (sizeof...(rest) == 3)  // a number: `first` is its unit; `rest` is value, range, meaning
                 {
                   const Meaning& meaning = std::get<2>(std::tie(rest...));
                   texts[key] = std::string(meaning.text) + " [" + first + "]";

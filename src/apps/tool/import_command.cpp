@@ -29,7 +29,7 @@ namespace
 constexpr int JOINTS = 6;
 constexpr const char* TELEMETRY_TOPIC = "/joint_states";
 constexpr Stamp TEMPERATURE_PERIOD = 1'000'000'000;  // time between two messages of temperatures [ns]
-/// Torque at the joint per motor current of the size 3 joints, measured at rest [N.m/A].
+/// Gain of a UR5's large joints, measured at rest [N.m/A].
 constexpr double DEFAULT_GAIN = 10.7;
 
 struct ImportOptions : CommonOptions
@@ -43,8 +43,8 @@ struct ImportOptions : CommonOptions
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 
-/// Columns of a UR controller's real-time interface: timestamp, then for each joint position, speed, current, torque
-/// and, if recorded, temperature.
+/// Columns of a UR controller's real-time interface that follow the timestamp. There is one of each for each joint. The
+/// temperature may be missing.
 constexpr std::array<const char*, 5> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment",
                                                  "joint_temperatures" };
 enum Quantity
@@ -77,7 +77,7 @@ NumberTable<ROW_COLUMNS>::Names columnNames()
   return names;
 }
 
-/// Converts rows to messages: telemetry and temperatures of all joints, and motor torque command and load of one joint.
+/// Converts rows to messages: telemetry and temperatures of all joints, and motor torque and load of one joint.
 class RowWriter
 {
 public:
@@ -107,7 +107,7 @@ public:
       const auto i = static_cast<std::size_t>(joint);
       telemetry_.position[i] = row[column(POSITION, joint)];
       telemetry_.velocity[i] = row[column(VELOCITY, joint)];
-      telemetry_.effort[i] = row[column(CURRENT, joint)];  // [A], as the driver of a UR publishes it
+      telemetry_.effort[i] = row[column(CURRENT, joint)];  // current [A], which the driver of a UR publishes as effort
     }
     command_.effort[0] = row[column(CURRENT, joint_)] * torque_per_current_;
     load_.effort[0] = row[column(MOMENT, joint_)];

@@ -105,9 +105,9 @@ struct FatigueRow
   std::size_t place{};
   StressCycle cycle;
   double equivalent{};   ///< stress amplitude at the notch with zero mean that does as much damage [Pa]
-  double cycles{};       ///< cycles that half of all flexsplines endure; infinite below the endurance limit
-  double cycles_weak{};  ///< cycles that 99 % of all flexsplines endure
-  double allowed{};      ///< cycles that the catalogue allows; infinite up to the repeated peak torque
+  double cycles{};       ///< number of cycles that half of all flexsplines endure; infinite below the endurance limit
+  double cycles_weak{};  ///< number of cycles that 99 % of all flexsplines endure
+  double allowed{};      ///< number of cycles that the catalogue allows; infinite up to the repeated peak torque
 };
 const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
   { "torque", &FatigueRow::torque, "torque [N.m]" },
@@ -115,10 +115,10 @@ const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{
   { "amplitude", [](const FatigueRow& row) { return row.cycle.amplitude(); }, "amplitude [Pa]" },
   { "mean", [](const FatigueRow& row) { return row.cycle.mean(); }, "mean [Pa]" },
   { "shear", [](const FatigueRow& row) { return row.cycle.shear; }, "shear [Pa]" },
-  { "equivalent", &FatigueRow::equivalent, "at the notch, no mean [Pa]" },
-  { "cycles", &FatigueRow::cycles, "cycles of half [-]" },
-  { "cycles_weak", &FatigueRow::cycles_weak, "of the weakest 1 % [-]" },
-  { "allowed", &FatigueRow::allowed, "catalogue allows [-]" }
+  { "equivalent", &FatigueRow::equivalent, "equivalent at notch [Pa]" },
+  { "cycles", &FatigueRow::cycles, "cycles, median [-]" },
+  { "cycles_weak", &FatigueRow::cycles_weak, "cycles, weakest 1 % [-]" },
+  { "allowed", &FatigueRow::allowed, "cycles, catalogue [-]" }
 };
 
 std::vector<FatigueRow> fatigueRows(const Parameters& parameters, double torque, const RevolutionLoad& revolution_load)
@@ -235,7 +235,7 @@ int age(const AgeOptions& options)
   return EXIT_DONE;
 }
 
-/// Writes all forecasts of the drives whose life ended.
+/// Writes to a CSV file all forecasts for the drives whose life ended.
 void writeForecasts(const std::string& path, const std::vector<LifeTrial>& lives)
 {
   CsvWriter csv(path,

@@ -38,9 +38,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double SAMPLE = 1.0;  // computing time of a trial run [s]
+constexpr double SAMPLE = 1.0;  // longest computing time of a trial run [s]
 
-/// Records the surfaces that a twin requests, and makes none.
+/// Pool that makes no surface, but records which surfaces a twin requests.
 class AskedSurfaces : public SurfacePool
 {
 public:
@@ -64,12 +64,12 @@ std::set<std::string> surfacesOf(const Parameters& parameters)
   }
   catch (const ParameterError&)
   {
-    // The run has no equilibrium and will fail.
+    // The twin has no equilibrium, so its run will fail.
   }
   return asked->keys;
 }
 
-/// Counts surfaces that runs need, that the cache lacks and that no earlier run needs.
+/// Counts the surfaces that runs need and the cache lacks. It counts a surface only for the first run that needs it.
 class MissingSurfaces
 {
 public:
@@ -79,7 +79,7 @@ public:
   {
     double count{};
     std::uint64_t first_run;     ///< first run that needs a surface; if no run does, the first run of the block
-    std::size_t of_first_run{};  ///< number of surfaces that this run needs
+    std::size_t of_first_run{};  ///< number of surfaces that `first_run` needs
   };
 
   /// Checks runs for a few seconds. The unchecked runs of the block are assumed to need as many surfaces on average.
@@ -123,7 +123,7 @@ private:
   std::set<std::string> known_;
 };
 
-/// Two significant digits, or all digits of a large number.
+/// Text of a number: two significant digits, or all digits before the decimal point if there are more.
 std::string rounded(double number)
 {
   constexpr double THREE_DIGITS = 99.5;
@@ -145,8 +145,8 @@ void printWarning(const std::string& text)
   std::cerr << "warning: " << text << '\n';
 }
 
-/// Prints number, time and size of the plan's runs from a trial of one run for each class and duty cycle. The
-/// trial builds the response surfaces, which the source may store. @throws InputError, ParameterError if a run has no
+/// Prints number, expected time and size of the plan's runs, from a trial of one run for each class and duty cycle. The
+/// trial builds response surfaces, which the source may store. @throws InputError, ParameterError if a run has no
 /// equilibrium.
 void printExpectation(const Plan& plan, unsigned jobs)
 {
@@ -299,8 +299,8 @@ int runLives(const SweepCommandOptions& options)
   return workOff(options, sweepLives);
 }
 
-const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "simulate the runs of a plan: a labelled data set", declare,
-                        runPlan };
+const Subcommand SWEEP{ Subject::DATA_SET, "sweep", "simulate the runs of a plan, which form a labelled data set",
+                        declare, runPlan };
 const Subcommand LIVES{ Subject::DATA_SET, "lives",
                         "simulate lives of drives with check-ups at intervals of use: a run-to-failure data set",
                         declare, runLives };
@@ -380,7 +380,7 @@ void declare(OptionTable& table, SignaturesOptions& options)
       .type("PLAN.yaml");
   table.add("--out", options.out, "file for parameter indicators.signatures").required().type("FILE.yaml");
   table.add("--runs", options.runs, "directory where finished runs are kept; default: they are not kept").type("DIR");
-  table.add("--add", options.add, "file of signatures to which those of the plans are appended; default: none")
+  table.add("--add", options.add, "file of other signatures, which --out then contains too; default: none")
       .type("FILE.yaml");
   addJobsOption(table, options.jobs);
   addCommonOptions(table, options);

@@ -74,7 +74,7 @@ struct Judging : Printed<Options>
   std::string fail_on;  ///< warn, error or not-judged; empty: the exit code does not depend on the verdict
 };
 
-/// Adds the function's options, `--json` and `--fail-on`.
+/// Adds the options of the library function, and `--json` and `--fail-on`.
 template <class Options>
 void declareJudging(OptionTable& table, Judging<Options>& options)
 {
@@ -99,7 +99,7 @@ int exitCodeOf(const std::string& fail_on, const Judged& found)
   return found.health >= least ? EXIT_DEPARTS : is_enough ? EXIT_DONE : EXIT_NOT_JUDGED;
 }
 
-/// Text of the level, with the number of joints that are not judged.
+/// Text with the level of the verdict and the number of joints that are not judged.
 template <class Judged>
 std::string headlineOf(const Judged& found)
 {

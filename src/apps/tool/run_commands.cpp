@@ -40,7 +40,7 @@ enum ProfileColumn
 
 constexpr Range TIMES{ 0.0, 1e9 };  // range of a stamp [s]
 
-/// Inputs of a simulation: motor torque, load and brake over time, each constant until the next entry.
+/// Inputs of a simulation: motor torque, load and brake over time. Each value is constant until the next one.
 class TorqueProfile
 {
 public:
@@ -92,14 +92,14 @@ public:
 
   bool hasLoad() const { return has_load_; }
 
-  /// Sets the load at t = 0 [N.m].
+  /// Sets the load from t = 0 on [N.m].
   void setLoad(double load_torque)
   {
     has_load_ = true;
     inputs_.insert(inputs_.begin(), { 0, InputKind::LOAD_TORQUE, load_torque });
   }
 
-  Stamp duration() const { return inputs_.back().stamp; }  ///< time of the last entry [ns]
+  Stamp duration() const { return inputs_.back().stamp; }  ///< time of the last input after t = 0 [ns]
 
   /// Gives the twin the inputs that act in its next step. `begin`: stamp of t = 0 [ns].
   void feed(Twin& twin, Stamp begin)

@@ -159,7 +159,7 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
   csv.close();
 }
 
-/// The three places of a row, each with its nominal stresses and the stresses at the notch.
+/// For each of the three places of the flexspline: nominal stresses, and stresses at the notch.
 Json stressJson(const Parameters& parameters, const StiffnessRow& row)
 {
   const FatigueLaw fatigue_law(parameters.life, parameters.stress);
@@ -177,7 +177,7 @@ Json stressJson(const Parameters& parameters, const StiffnessRow& row)
   return json;
 }
 
-/// Largest stress at a notch [Pa].
+/// Largest stress at a notch of the flexspline [Pa].
 double largestStress(const Parameters& parameters, const StiffnessRow& row)
 {
   double largest = 0.0;

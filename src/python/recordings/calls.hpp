@@ -20,7 +20,7 @@
 #include "python/configuration.hpp"
 #include "twin/options.hpp"
 
-// Common part of the functions of the module _recordings: options by name as input, a document and notices as output.
+// Common part of the functions of the module _recordings. They take options by name, and return a document and notices.
 namespace hjt
 {
 py::object toPython(const Json& json);
@@ -364,8 +364,8 @@ private:
 
 using Answer = std::pair<py::object, std::vector<std::string>>;
 
-/// Calls `function` with the options without the interpreter's lock. Returns the document that `document` makes of its
-/// result, and the notices.
+/// Calls `function` with the options, without the interpreter's lock. @returns the document that `document` makes of
+/// the result, and the notices of the call.
 template <class Options, class Function, class Document>
 Answer call(const Given& given, Options& options, const Function& function, const Document& document)
 {

@@ -78,7 +78,7 @@ void takeRows(const py::object& columns, RecordingOptions& options)
   options.rows_have_load = static_cast<bool>(MotionColumn(columns, "load"));
 }
 
-/// Options for reading a recording, which is a file or columns. @throws InputError.
+/// Reads the options of a function on a recording, which is a file or columns. @throws InputError.
 template <class Options>
 void takeRecording(const Given& given, Options& options)
 {
@@ -178,7 +178,7 @@ void define(py::module& module, const char* name, const char* text, void (*take)
   listOptions<Options>(module, name);
 }
 
-/// Defines a function whose document is its report.
+/// Defines a function whose result becomes a document through its report.
 template <class Options, class Result>
 void define(py::module& module, const char* name, const char* text, void (*take)(const Given&, Options&),
             Result (*function)(const Options&))

@@ -32,7 +32,7 @@ constexpr const char* FOLLOW = "follow_joint_trajectory";
 constexpr double PATH_POSITION = 0.2;  // tolerance of an angle during the motion [rad]
 constexpr double END_POSITION = 0.1;   // tolerance of an angle at the end [rad]
 constexpr double END_SPEED = 0.05;     // tolerance of a speed at the end [rad/s]
-constexpr double PATIENCE = 0.6;       // time after the end of the motion by which the arm must arrive [s]
+constexpr double PATIENCE = 0.6;       // time after the end of the motion within which the arm must arrive [s]
 
 constexpr double LOOK_PERIOD = 0.01;  // time between two checks of the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
@@ -43,7 +43,7 @@ void take(double given, double& tolerance)
   tolerance = given < 0.0 ? HUGE_VAL : given > 0.0 ? given : tolerance;
 }
 
-/// @returns the error of the tolerances; empty if they are valid. Accelerations are not checked.
+/// Reads tolerances of joints, except those of accelerations. @returns the error; empty if the tolerances are valid.
 std::string takeTolerances(const std::vector<control_msgs::JointTolerance>& given, const char* what,
                            const ArmDescription& arm, std::vector<JointTolerance>& tolerances)
 {
