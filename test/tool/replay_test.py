@@ -195,7 +195,7 @@ class Replay(tool.ToolTest):
             name = f"{int(number)}.bag"
             code, errors = self.interrupt_while_writing(name, number, "replay", "in.bag", "--out", name)
             self.assertEqual(code, 128 + number)
-            self.assertIn(b"readable up to here", errors)
+            self.assertIn(b"contains everything up to the interrupt", errors)
             self.assertGreater(len(tool.raw_messages(self.path(name))), 10)
 
 

@@ -123,7 +123,7 @@ class Simulate(tool.ToolTest):
             code, errors = self.interrupt_while_writing(name, number, "simulate", "--duration", "1000",
                                                         "--torque", "0.4", "--out", name)
             self.assertEqual(code, 128 + number)
-            self.assertIn(b"readable up to here", errors)
+            self.assertIn(b"contains everything up to the interrupt", errors)
             self.assertGreater(len(tool.raw_messages(self.path(name))), 10)
 
 

@@ -37,8 +37,8 @@ std::vector<ArmSetPoint> setPointsOf(const py::object& columns)
       (accelerations && !fits(accelerations)))
   {
     throw InputError(
-        "motion: a column 'time' of shape (rows,) and a column 'position' of shape (rows, joints) are required; "
-        "columns 'velocity' and 'acceleration' must have the shape of 'position'");
+        "motion: columns 'time', of shape (rows,), and 'position', of shape (rows, joints), are required; columns "
+        "'velocity' and 'acceleration' must have the shape of 'position'");
   }
   std::vector<ArmSetPoint> points(static_cast<std::size_t>(times.rows()));
   for (std::size_t row = 0; row < points.size(); ++row)
