@@ -27,7 +27,7 @@ void visitArm(Arm& arm, Fields& fields)
   {
     const std::string place = "joints." + std::to_string(i) + '.';
     auto& joint = arm.joints[i];
-    fields(place + "name", joint.short_name, "prefix of the joint's variables");
+    fields(place + "name", joint.short_name, "prefix of the names of the joint's variables");
     fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed of the joint; 0: no limit");
     fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY,
            "largest torque of the feedback at the joint; 0: no limit");

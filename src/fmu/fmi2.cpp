@@ -63,7 +63,7 @@ extern "C"
                           require(name, "instanceName");
                           if (type != CO_SIMULATION)
                           {
-                            throw CallError("fmuType must be co-simulation, which this unit is for");
+                            throw CallError("fmuType must be co-simulation, because this unit supports nothing else");
                           }
                         });
   }

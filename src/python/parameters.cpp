@@ -403,11 +403,11 @@ void bindParameters(py::module& module)
                             "All parameters of a joint, by their keys 'section.name' (docs/parameters.md), in SI "
                             "units, temperatures in degC.\n\n"
                             "Parameters(*overlays, config_dir=''): the default configuration, changed by the overlays; "
-                            "later ones win. An overlay is a YAML file as for the tool's --config, for example "
-                            "'joints/elbow.yaml', or a dict of keys and values, as for --set. config_dir: directory of "
-                            "another default configuration.\n\n"
-                            "Setting a value checks all parameters at once. ParameterError names key, value, unit and "
-                            "range, and leaves everything unchanged.")
+                            "later overlays replace values of earlier ones. An overlay is a YAML file as for the "
+                            "tool's --config, for example 'joints/elbow.yaml', or a dict of keys and values, as for "
+                            "--set. config_dir: directory of another default configuration.\n\n"
+                            "Setting a value checks all parameters at once. A ParameterError names key, value, unit "
+                            "and range; no value has then changed.")
       .def(py::init(&configurationOf), "Parameters(*overlays, config_dir='')")
       .def("__getitem__", &Configuration::value, py::arg("key"),
            "Returns the value of a key; a list of numbers is a tuple.")
@@ -437,8 +437,8 @@ void bindParameters(py::module& module)
       .def_static("field", &fieldOf, py::arg("key"),
                   "Returns type, unit, range and meaning of a key as a Field. Raises KeyError.")
       .def_property("faults", &Configuration::faults, &Configuration::setFaults,
-                    "Faults that are active at the start or set in later: list of Fault. It is set as a whole, to one "
-                    "or several; texts 'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
+                    "Faults that act from the start or begin later: list of Fault. Assign one fault or several; texts "
+                    "'KIND:SEVERITY[:PLACE[:ONSET]]' are accepted too.")
       .def(
           "describe", [](const Configuration& self) { return describeParameters(self.values()); },
           "Returns a text with one line for each parameter: key, value, unit and meaning.")

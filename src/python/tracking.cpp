@@ -158,8 +158,8 @@ void bindTracking(py::module& module)
       "A sound joint beside a recorded one, as in `joint_twin follow` and the node beside a robot.\n\n"
       "Tracker(parameters, mode='motion', cache=None, progress=None). mode: 'motion' predicts the current of the "
       "recorded motion, 'torque' the motion of the recorded current, 'observer' corrects the twin towards the recorded "
-      "angles. parameters: of the joint, for example Parameters('joints/elbow.yaml', 'beside_robot.yaml'); "
-      "telemetry.load tells the source of the load. cache, progress: as for Twin. Raises ParameterError.")
+      "angles. parameters: those of the joint, for example Parameters('joints/elbow.yaml', 'beside_robot.yaml'); "
+      "telemetry.load says where the load comes from. cache, progress: as for Twin. Raises ParameterError.")
       .def(py::init<const Configuration&, const std::string&, const std::optional<std::string>&, const py::object&>(),
            py::arg("parameters"), py::arg("mode") = "motion", py::arg("cache") = py::none(),
            py::arg("progress") = py::none())
@@ -168,13 +168,13 @@ void bindTracking(py::module& module)
            py::arg("at_end") = true, py::arg("progress") = py::none(),
            "Processes rows of a recording without the interpreter's lock, as arrays of shape (rows,): time [s], "
            "ascending; position of the joint [rad]; current of the motor [A]; load at the output, > 0 resists positive "
-           "motion [N.m]; temperature of the drive [degC]; motor_angle [rad]; None: not recorded. at_end: no row "
-           "follows; False keeps the last 36 ms for the next call. progress: as for Twin.run.\n\n"
+           "motion [N.m]; temperature of the drive [degC]; motor_angle [rad]; None: not recorded. at_end: whether no "
+           "row follows; if False, the last 36 ms stay for the next call. progress: as for Twin.run.\n\n"
            "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Impossible rows are "
            "ignored and counted. Raises InputError.")
       .def(
           "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Prepares for another recording.")
-      .def_property_readonly("counters", &countersOf, "counts by name: dict of str to int")
+      .def_property_readonly("counters", &countersOf, "counts of events, by name: dict of str to int")
       .def_property_readonly(
           "lag", [](TrackerObject& self) { return self.tracker().lag(); },
           "delay of the recorded current, or speed, behind its prediction [s] or None")

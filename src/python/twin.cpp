@@ -168,7 +168,7 @@ void bindReadings(py::class_<TwinObject>& twin)
                              "faults that act at the present instant: list of Fault, ordered by kind and place")
       .def_property_readonly(
           "parameters", [](const TwinObject& self) { return self.parameters(); },
-          "Parameters that cannot be changed; set values in a copy and make a Twin of it")
+          "Parameters that cannot be changed; set values in a copy and make a Twin of the copy")
       .def("tooth_forces", &TwinObject::toothForces,
            "Returns the forces on every tooth at the present instant as ToothForces, views that the next call "
            "overwrites. On the response surface this solves a full ring. Raises NotConverged.")
@@ -237,7 +237,7 @@ void bindTwin(py::module& module)
            "numbers.")
       .def(
           "__deepcopy__", [](TwinObject& self, const py::dict&) { return copyOf(self); }, py::arg("memo"),
-          "Returns a copy like that of copy.copy.")
+          "Returns a copy, as copy.copy does.")
       .def(
           "__reduce__",
           [](TwinObject&) -> py::object

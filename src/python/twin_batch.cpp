@@ -473,10 +473,11 @@ void bindTwinBatch(py::module& module)
       module, "TwinBatch",
       "Twins that step together on all cores, without the interpreter's lock.\n\n"
       "TwinBatch(twins, n=None, cache=None, progress=None, threads=None). twins: Parameters or a Twin, of which n "
-      "copies are made, alike to the noise of their sensors; or several of them, each with its own parameters and "
-      "faults: Parameters make a twin, a Twin is taken as it is. All with the same solver.rate. Equal response "
-      "surfaces are shared. cache: as for Twin. progress: called with 0 ... 1 while the twins are made. threads: "
-      "number of threads with the caller's; None: one for each processor. Raises InputError, ParameterError.\n\n"
+      "copies are made, with equal noise of their sensors; or a list of them, each with its own parameters and faults. "
+      "Parameters make a new twin; a Twin is used itself, not copied. All twins need the same solver.rate. Equal "
+      "response surfaces are shared. cache: as for Twin. progress: called with 0 ... 1 while the twins are made. "
+      "threads: number of threads with the caller's; None: one for each processor. Raises InputError, "
+      "ParameterError.\n\n"
       "batch[i] is the i-th Twin, which may be reset, read or given a fault. Each twin gives the numbers that it would "
       "give alone. A twin without equilibrium keeps its state, with converged = False, and counts this in "
       "counters['solver_failures']; the others continue.");

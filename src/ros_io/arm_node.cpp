@@ -275,7 +275,7 @@ DiagnosticVerdict ArmDiagnostics::judge() const
   return firstOf({ { !snapshot_.stop_reason.empty(), { D::ERROR, "Protective stop: " + snapshot_.stop_reason } },
                    { !failed.empty(), { D::ERROR, "The solver did not converge: " + failed } },
                    { !overloaded.empty(),
-                     { D::WARN, "Torque beyond output.torque_limit, where a step takes longer than its period: " +
+                     { D::WARN, "The torque exceeds output.torque_limit, so a step takes longer than its period: " +
                                     overloaded } } },
                  { D::OK, "Moves" });
 }

@@ -259,8 +259,8 @@ visualization_msgs::MarkerArray DriveMarkers::draw(const harmonic_joint_twin::Co
 
   Marker text = makeMarker(header, "loads", Marker::TEXT_VIEW_FACING, BLACK);
   char line[120];
-  std::snprintf(line, sizeof line, "%d teeth loaded, at most %.0f N; wave generator at most %.0f N", teeth.loaded,
-                teeth.largest, teeth.largest_pressing);
+  std::snprintf(line, sizeof line, "%d teeth loaded with at most %.0f N; force of the wave generator at most %.0f N",
+                teeth.loaded, teeth.largest, teeth.largest_pressing);
   text.text = line;
   text.scale.z = TEXT_HEIGHT;
 

@@ -209,7 +209,8 @@ private:
     else
     {
       ++missing_effort_;
-      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "Refused a message on ~" << topic << ": no effort for " << expected);
+      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD,
+                               "Refused a message on ~" << topic << ": it has no effort for " << expected);
     }
   }
 

@@ -92,8 +92,8 @@ TelemetryStatus JointTracker::read(const sensor_msgs::JointState& message, Motio
       break;
     case TelemetryStatus::INCOMPLETE:
       ++refusals_.incomplete;
-      ROS_WARN_STREAM_THROTTLE(
-          WARNING_PERIOD, "No position or no effort (motor current) of " << names_.joint << " on " << stream_.topic);
+      ROS_WARN_STREAM_THROTTLE(WARNING_PERIOD, "There is no position or no effort (motor current) of "
+                                                   << names_.joint << " on " << stream_.topic);
       break;
     case TelemetryStatus::NOT_FINITE:
       ++refusals_.not_finite;

@@ -368,7 +368,7 @@ void TrackerNode::missTelemetry()
                        << (is_announced   ? "A publisher of this topic exists but sends no messages" :
                            others.empty() ? "No node publishes a JointState; check whether the driver runs" :
                                             "A JointState is published on " + printable(joined(others), MAX_NAMES) +
-                                                "; select it with measured:="));
+                                                "; select this topic with measured:="));
 }
 
 /// Forgets all rows, because the next rows have stamps of another clock.

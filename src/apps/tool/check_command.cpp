@@ -140,7 +140,7 @@ std::string textOfVelocities(const CheckedArm& arm)
       std::any_of(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& joint) { return joint.has_velocity; });
   const bool is_known = std::any_of(arm.joints.begin(), arm.joints.end(),
                                     [](const CheckedJoint& joint) { return std::isfinite(joint.time_factor.value); });
-  return !has     ? "none: the stamps cannot be checked" :
+  return !has     ? "none are recorded, so the stamps cannot be checked" :
          is_known ? "do not fit the angles; the table of the joints says how" :
                     "too little motion to compare them with the angles";
 }

@@ -172,7 +172,7 @@ std::string invalidRatio(const std::string& text)
 
 void declare(OptionTable& table, GearOptions& options)
 {
-  table.add("--size", options.request.size, "size of the gear in a catalogue's numbers: 11, 14, 17, 20, 25, 32 ...")
+  table.add("--size", options.request.size, "size of the gear, as catalogues number it: 11, 14, 17, 20, 25, 32 ...")
       .range(5, 100);
   table
       .add("--ratio", options.request.ratio,

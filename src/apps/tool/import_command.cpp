@@ -247,7 +247,7 @@ void declare(OptionTable& table, ImportOptions& options)
   table.add("--gain", options.gain, "torque at the joint per ampere of motor current [N.m/A]");
   table.add("--ratio", options.ratio, "ratio of the recorded gear [-]; default: that of the configured gear")
       .positive();
-  table.add("--start-time", options.start_time, "ROS time of timestamp 0 [s]").range(0.0, 4e9);
+  table.add("--start-time", options.start_time, "ROS time that timestamp 0 gets [s]").range(0.0, 4e9);
   addNamespaceOption(table, options.joint_namespace);
   addCommonOptions(table, options);
 }

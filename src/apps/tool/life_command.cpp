@@ -188,7 +188,7 @@ void declareFatigue(OptionTable& table, FatigueOptions& options)
 {
   table.add("--torques", options.torques,
             "loads at the output [N.m]; default: rated, repeated and momentary peak torque of the catalogue");
-  table.add("--positions", options.positions, "number of wave generator angles in a tooth pitch").range(1, 100000);
+  table.add("--positions", options.positions, "number of wave generator angles per tooth pitch").range(1, 100000);
   addCommonOptions(table, options);
 }
 
@@ -229,7 +229,7 @@ int age(const AgeOptions& options)
   };
   if (options.check)
   {
-    lines.push_back({ "map_error", "largest error of the map of loads", bench.load_map.largestError() });
+    lines.push_back({ "map_error", "largest error of the interpolated loads", bench.load_map.largestError() });
   }
   printReport(options.json, lines);
   return EXIT_DONE;
@@ -297,20 +297,21 @@ int trials(const TrialsOptions& options)
   }
   const Coverage all = coverage(lives, 0.0);
   const Coverage later = coverage(lives, 0.5);
-  printReport(options.json, { { "lives", "lives", lives.size() },
-                              { "flank_wear", "ended by flank wear", ends[0] },
-                              { "interface_wear", "ended by interface wear", ends[1] },
-                              { "root_crack", "ended by a root crack", ends[2] },
-                              { "bearing", "ended by the bearing", ends[3] },
-                              { "tooth_space_fatigue", "ended by fatigue in the tooth space", ends[4] },
-                              { "transition_fatigue", "ended by fatigue where the rim meets the cup", ends[5] },
-                              { "flange_fatigue", "ended by fatigue at the flange", ends[6] },
-                              { "unended", "still in use at the end", unended },
-                              { "forecasts", "forecasts", all.forecasts },
-                              { "coverage_80", "", all.share() },
-                              { "coverage_80_from_half_life", "", later.share() },
-                              { "", "truth within the 80 % interval", 100.0 * all.share(), "%" },
-                              { "", "the same share, in the second half of each life", 100.0 * later.share(), "%" } });
+  printReport(options.json,
+              { { "lives", "lives", lives.size() },
+                { "flank_wear", "ended by flank wear", ends[0] },
+                { "interface_wear", "ended by interface wear", ends[1] },
+                { "root_crack", "ended by a root crack", ends[2] },
+                { "bearing", "ended by the bearing", ends[3] },
+                { "tooth_space_fatigue", "ended by fatigue in the tooth space", ends[4] },
+                { "transition_fatigue", "ended by fatigue where the rim meets the cup", ends[5] },
+                { "flange_fatigue", "ended by fatigue at the flange", ends[6] },
+                { "unended", "still in use at the end", unended },
+                { "forecasts", "forecasts", all.forecasts },
+                { "coverage_80", "", all.share() },
+                { "coverage_80_from_half_life", "", later.share() },
+                { "", "interval of 80 % holds the truth, all forecasts", 100.0 * all.share(), "%" },
+                { "", "interval of 80 % holds the truth, second half of lives", 100.0 * later.share(), "%" } });
   return EXIT_DONE;
 }
 
@@ -337,7 +338,7 @@ void declareAge(OptionTable& table, AgeOptions& options)
   declareLife(table, options);
   table.add("--every", options.every, "hours of use between two rows").range(1e-3, 1e9);
   table.flag("--check", options.check,
-             "also compute the error of the map of loads between its stages of wear (takes some seconds)");
+             "also compute the error of the loads that are interpolated between stages of wear (takes some seconds)");
 }
 
 const Subcommand AGE{ Subject::STUDY, "life age", "life of the nominal drive, from new to its end", declareAge, age };

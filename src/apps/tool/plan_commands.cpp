@@ -386,8 +386,9 @@ void declare(OptionTable& table, SignaturesOptions& options)
   addCommonOptions(table, options);
 }
 
-const Subcommand SIGNATURES{ Subject::DATA_SET, "signatures",
-                             "changes of a gear's health indicators by each fault, from runs with and without it",
-                             declare, signatures };
+const Subcommand SIGNATURES{
+  Subject::DATA_SET, "signatures",
+  "changes of a gear's health indicators by each fault, from runs with and without the fault", declare, signatures
+};
 }  // namespace
 }  // namespace hjt

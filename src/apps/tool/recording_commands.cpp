@@ -137,7 +137,7 @@ void printJoint(const ComparedRecording& compared)
   printReport(false, { { "", "rows", joint.rows },
                        { "", "duration", compared.found.duration, "s" },
                        { "", "current, rms", joint.current_rms, "A" },
-                       { "", "measured less predicted current, rms", joint.residual_rms, "A" } });
+                       { "", "measured - predicted current, rms", joint.residual_rms, "A" } });
 }
 
 int printCompared(const JudgedComparison& options, const ComparedRecording& compared)

@@ -54,8 +54,8 @@ void declareMethod(OptionTable& table, std::string& method, double& step, double
   table.add("--step", step, "time step [s]").positive();
   table
       .add("--tolerance", tolerance,
-           "largest error of a tooth's position in one step [m]; the step length follows from it, and --step is the "
-           "largest one")
+           "largest error of a tooth's position in one step [m]; the step length follows from this error and is at "
+           "most --step")
       .positive();
 }
 
@@ -108,7 +108,7 @@ int transient(const TransientOptions& options)
                 { "energy_stored", "energy stored", end.stored, "J" },
                 { "energy_kinetic", "energy kinetic", end.kinetic, "J" },
                 { "energy_dissipated", "energy dissipated by dashpots", end.dissipated, "J" },
-                { "energy_lost", "energy lost by method and contact law", numerical, "J" },
+                { "energy_lost", "energy lost by the integration and the contact law", numerical, "J" },
                 { "steps", "steps", result.counts.steps },
                 { "force_evaluations", "force evaluations", result.counts.force_evaluations },
                 { "factorisations", "factorisations", result.counts.factorisations },
@@ -128,7 +128,7 @@ void declareTransient(OptionTable& table, TransientOptions& options)
   table.add("--duration", setup.duration, "simulated time [s]").positive();
   table
       .add("--window", setup.window_start,
-           "beginning of the window for statistics of the largest force; it lasts to the end [s]")
+           "beginning of the window for statistics of the largest force; the window lasts to the end [s]")
       .positive();
   table.add("--sample", setup.sample_period, "time between two rows of the series [s]").positive();
   table.add("--csv", options.csv, "file for the series").type("FILE");
