@@ -60,8 +60,8 @@ bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
   return false;
 }
 
-/// Whether the present master knows all topics of this node. A master that was replaced during the node's start knows
-/// only the last topics. If no master responds, the result is true, because connections continue without a master.
+/// Whether the present master knows all topics of this node. A master that came up during the node's start knows only
+/// the last topics. If no master responds, the result is true, because connections continue without a master.
 bool isKnownToMaster()
 {
   XmlRpc::XmlRpcValue arguments;

@@ -15,7 +15,7 @@ namespace
 {
 constexpr Range ANY{ -1e300, 1e300 };
 
-/// Calls `fields` with the key, unit, value, range and meaning of all values of an arm. It reads or writes them.
+/// Calls `fields` with key, unit, value, range and meaning of each value of an arm. `fields` reads or writes the value.
 template <class Arm, class Fields>
 void visitArm(Arm& arm, Fields& fields)
 {
@@ -110,7 +110,7 @@ struct Writer
   }
 
   std::string text;
-  std::string last;  // list item that the writer is in
+  std::string last;  // list item of the last written key
 };
 
 std::size_t countOf(const ParameterMap& map, const std::string& list, const std::string& key)
@@ -143,7 +143,7 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
     const bool is_array = start.size() > 1;
     all.push_back({ name, unit, meaning, Causality::INPUT, Type::FLOAT64, { std::move(start) }, range, is_array });
   };
-  constexpr double WRENCH = 1000.0;  // limit of each component, as on the node's ~wrench [N], [N.m]
+  constexpr double WRENCH = 1000.0;  // largest component of a force or moment, as on the node's ~wrench [N], [N.m]
   const std::vector<double> zeros(arm.joints.size(), 0.0);
   add("target_q", "rad", "angles of the joints' set points at the end of the step", zeros, ANGLES);
   add("target_qd", "rad/s", "speeds of the joints' set points at the end of the step", zeros, { -100.0, 100.0 });

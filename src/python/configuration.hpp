@@ -23,7 +23,7 @@ void readOverlay(const py::handle& what, const std::string& directory, Parameter
 class Configuration
 {
 public:
-  /// The default configuration, changed by overlays (files or dicts); later ones win.
+  /// The default configuration, changed by overlays (files or dicts). Later overlays replace values of earlier ones.
   /// `directory`: that of the default configuration; empty: the one that the tool uses. @throws ParameterError.
   Configuration(const py::args& overlays, const std::string& directory);
 

@@ -113,7 +113,7 @@ private:
     publisher_.publish(message);
   }
 
-  static constexpr unsigned QUEUE_SIZE = 20;  // messages; all joints of an arm report at once
+  static constexpr unsigned QUEUE_SIZE = 20;  // number of messages; all joints of an arm report at once
 
   const std::string name_;
   const std::string hardware_id_;

@@ -145,7 +145,7 @@ public:
                TelemetryStream& stream, std::mutex& mutex);
 
   const std::string& joint() const { return names_.joint; }
-  double currentPerEffort() const { return current_per_effort_; }  ///< current over effort [-], [A/(N.m)]
+  double currentPerEffort() const { return current_per_effort_; }  ///< current / effort; [A/(N.m)] for a torque
   double greatestSpeed() const { return greatest_speed_; }         ///< largest possible speed of the joint [rad/s]
   /// Whether the load is computed from the motion of the whole arm.
   bool takesArmLoad() const { return takes_arm_load_; }
@@ -233,8 +233,8 @@ private:
   const ThermalModel thermal_model_;
   const double ratio_;                          // motor angle / output angle [-]
   const double greatest_speed_;                 // largest possible speed of the joint [rad/s]
-  const double current_per_effort_;             // current over effort [-], [A/(N.m)]
-  static constexpr std::uint64_t SILENT = 100;  // first messages without effort after which the current is 0
+  const double current_per_effort_;             // current / effort; [A/(N.m)] if the effort is a torque
+  static constexpr std::uint64_t SILENT = 100;  // number of messages without effort, after which the current is 0
   std::uint64_t without_effort_{};              // number of successive messages without an effort
   bool has_effort_{};                           // whether a message has had an effort
   double arm_friction_{ 1.0 };

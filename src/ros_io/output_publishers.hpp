@@ -205,7 +205,7 @@ public:
   }
 
 private:
-  // Number of waiting lists of faults. If all are in use, a further change waits for the next instant.
+  // Number of lists of faults that can wait for the thread. If all are in use, a change waits for the next instant.
   static constexpr std::size_t FAULT_SLOTS = 16;
 
   struct FaultsAt

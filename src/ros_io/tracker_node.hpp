@@ -37,7 +37,7 @@ public:
     std::vector<Parameters> joints;
     std::vector<SoundJoint> sound;        ///< reference of each joint
     bool is_identified{};                 ///< whether the parameters contain the identified friction of this arm
-    std::string name;                     ///< name of the arm; empty without a check of its type
+    std::string name;                     ///< name of the arm, for the check of the arm's type
     ArmWatch::MakeCandidates candidates;  ///< candidates for the check of the arm's type; null: no check
     bool unit_is_given{};                 ///< whether the user has given the unit of the efforts
   };
@@ -75,7 +75,7 @@ private:
   std::mutex mutex_;  // protects the members below, because callbacks run in several threads
   TelemetryStream stream_;
   std::vector<std::unique_ptr<JointTracker>> joints_;
-  std::optional<RowFilter> filter_;  // removes invalid rows, of all joints together
+  std::optional<RowFilter> filter_;  // removes invalid rows of the joints
   std::optional<ArmLoad> arm_load_;
   std::optional<RecordingFit> fit_;  // check of the telemetry; only for an arm
   std::optional<LoadWatch> load_;

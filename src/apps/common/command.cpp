@@ -322,7 +322,7 @@ CommandNode& subcommand(CommandNode& command, const std::string& given)
 /// Parses the words after the program's name into the fields of the chosen command. @throws UsageError.
 Request parseWords(CommandNode& command, const Words& words)
 {
-  // Options of a command with subcommands have no values, so its first word without a dash is a subcommand.
+  // Options of a command with subcommands have no values, so the first word without a dash is a subcommand.
   const auto end = std::find_if(words.begin(), words.end(),
                                 [&](const std::string& word)
                                 { return !command.subcommands.empty() && (word.empty() || word[0] != '-'); });

@@ -82,7 +82,7 @@ public:
     std::size_t of_first_run{};  ///< number of surfaces that `first_run` needs
   };
 
-  /// Checks runs for a few seconds. The unchecked runs of the block are assumed to need as many surfaces on average.
+  /// Checks runs for a few seconds. The other runs of the block are assumed to need equally many surfaces on average.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;
