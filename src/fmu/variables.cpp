@@ -254,8 +254,8 @@ std::vector<ScalarOutput> healthOutputs()
     { "assessment_level", "-", "level of the assessment: 0 OK, 1 WARN, 2 ERROR", Type::INT32,
       [](T t, O) { return static_cast<double>(t.assessment().level); }, true },
     { "assessment_state", "-",
-      "state of the assessment: 0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows", Type::INT32,
-      [](T t, O) { return static_cast<double>(t.assessment().state); }, true },
+      "state of the assessment: 0 waiting, 1 learning, 2 assessed, 3 no reference, 4 too few windows, 5 other payload",
+      Type::INT32, [](T t, O) { return static_cast<double>(t.assessment().state); }, true },
     { "assessment_cause", "-",
       "most likely cause: 0: none; 1, 2, ...: the fault of the first, second, ... input fault_*; the last number: a "
       "tooth of the circular spline",

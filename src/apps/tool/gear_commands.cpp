@@ -95,8 +95,8 @@ void write(const GearOptions& options, const GearDesign& design, const Parameter
   const auto texts = meanings(parameters);
   TextStream file;
   file << "# Overlay: " << title
-       << ".\n# Made by joint_twin gear. Motor, brake, load, heat and sensors are those of the joint: "
-          "motor, brake,\n# output.*_inertia, output.torque_limit, thermal and sensors are left as configured.\n";
+       << ".\n# Made by joint_twin gear. The overlay changes only the gear: motor, brake, output.*_inertia,\n"
+          "# output.torque_limit, thermal and sensors stay as configured.\n";
   for (const auto& [section, members] : sections)
   {
     file << '\n' << section << ":\n";
