@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Friction of a measured joint as a factor with an interval: what is judged, and why what is not is not.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -25,6 +26,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 constexpr double PERIOD = 0.008;  // [s]
+constexpr double NOT_GIVEN = std::numeric_limits<double>::quiet_NaN();
 
 using Motion = std::function<MotionSample(double)>;
 
@@ -58,6 +60,7 @@ public:
   WornJoint()
     : parameters_(shippedParameters({ "motor.viscous_friction=0.0", "solver.rate=2000" }))
     , twin_(parameters_)
+    , torsion_(parameters_)
     , evidence_(parameters_, LoadOrigin::CONFIGURED)
   {
   }
@@ -80,6 +83,7 @@ public:
       const double worn = (factor(sample.time) - 1.0) * predicted.friction_torque / gain();
       sample.current = predicted.current + worn + more + 0.05 * engine.normal();
       sample.target_current = predicted.current + (expected_ - 1.0) * predicted.friction_torque / gain();
+      sample.motor_angle = evidence_.ratio() * (sample.position + compliance_ * torsion_.to(sample.load) + 0.01);
       evidence_.update(sample);
     }
     return evidence_;
@@ -97,6 +101,9 @@ public:
     return judgeFriction(evidence(swing, 60.0, factor), context, verdict_);
   }
 
+  /// From now on a motor encoder shows this multiple of the twin's torsion; NaN: the motor has none.
+  void twist(double compliance) { compliance_ = compliance; }
+
   /// From now on the controller expects this multiple of the twin's friction; NaN: what it expects is not recorded.
   void expect(double factor) { expected_ = factor; }
 
@@ -104,9 +111,11 @@ public:
 
 private:
   Parameters parameters_;
-  double expected_{ std::numeric_limits<double>::quiet_NaN() };
+  double expected_{ NOT_GIVEN };
+  double compliance_{ NOT_GIVEN };
   Verdict verdict_;
   MotionDriven twin_;
+  TorsionCourse torsion_;
   JointEvidence evidence_;
 };
 
@@ -207,8 +216,8 @@ TEST_F(FrictionVerdict, WhatTheControllerExpectsIsAReferenceWhereMostJointsAgree
   const JointEvidence sound = evidence(1.5, 1.5);
   const JointEvidence worn = evidence(1.5 * 1.3, 1.5);
   const JointEvidence unlike = evidence(1.5, 0.7);
-  const JointEvidence unknown = evidence(1.5, std::numeric_limits<double>::quiet_NaN());
-  joint_.expect(std::numeric_limits<double>::quiet_NaN());
+  const JointEvidence unknown = evidence(1.5, NOT_GIVEN);
+  joint_.expect(NOT_GIVEN);
   EXPECT_TRUE(controllerIsReference({ &sound, &worn, &sound, &sound }));
   EXPECT_FALSE(controllerIsReference({ &sound, &unlike, &unlike, &sound, &sound, &unlike }));
   EXPECT_FALSE(controllerIsReference({ &unknown, &unknown, &unknown, &unknown }));
@@ -270,6 +279,48 @@ TEST_F(FrictionVerdict, ALoadThatBothWaysDoNotShareIsUncertain)
   const double with = frictionFactor(joint_.evidence(sorted, 60.0, 1.0), {}).deviation;
   const double without = frictionFactor(joint_.evidence(alike, 60.0, 1.0), {}).deviation;
   EXPECT_GT(with, 1.3 * without);
+}
+
+TEST_F(FrictionVerdict, TorsionIsJudgedBesideTheTwinOrBesideTheDrivesOwn)
+{
+  Verdict verdict;
+  const auto torsion = [&](double compliance, double own, const Motion& motion = swing)
+  {
+    JointContext context;
+    context.own.compliance_ratio = own;
+    joint_.twist(compliance);
+    verdict = judge(joint_.evidence(motion, 60.0, 1.0), context);
+    joint_.twist(NOT_GIVEN);
+    return *std::find_if(verdict.findings.begin(), verdict.findings.end(),
+                         [](const Finding& finding) { return finding.subject == FindingSubject::TORSION; });
+  };
+  const ComparisonParameters& comparison = joint_.parameters().comparison;
+  const double error = joint_.parameters().indicators.error_factor;
+  for (const auto& [own, tolerance] :
+       { std::pair{ NOT_GIVEN, comparison.compliance_tolerance }, std::pair{ 1.3, comparison.repeat_tolerance } })
+  {
+    const double sound = std::isnan(own) ? 1.0 : own;
+    for (const auto& [deviation, level] :
+         { std::pair{ 0.0, VerdictLevel::OK }, std::pair{ 0.9 * tolerance, VerdictLevel::OK },
+           std::pair{ -0.9 * tolerance, VerdictLevel::OK }, std::pair{ 1.1 * tolerance, VerdictLevel::WARN },
+           std::pair{ -1.1 * tolerance, VerdictLevel::WARN },
+           std::pair{ 1.1 * error * tolerance, VerdictLevel::ERROR } })
+    {
+      SCOPED_TRACE(testing::Message() << "torsion " << deviation << " beside " << sound);
+      const Finding finding = torsion(sound * (1.0 + deviation), own);
+      EXPECT_EQ(finding.level, level);
+      EXPECT_EQ(finding.reason, level == VerdictLevel::OK ? Reason::SOUND : Reason::TORSION);
+      EXPECT_NEAR(verdict[Figure::TORSION_OF_TWIN], sound * (1.0 + deviation), 1e-3);
+      EXPECT_NEAR(verdict[Figure::TORSION_TOLERANCE], tolerance, 1e-12);
+    }
+  }
+  EXPECT_EQ(torsion(NOT_GIVEN, NOT_GIVEN).reason, Reason::NO_MOTOR_ANGLE);
+  EXPECT_EQ(torsion(1.0, NOT_GIVEN, between(0.5)).reason, Reason::LOAD_CONSTANT);
+  for (const double no_drive : { -0.1, 20.5 })
+  {
+    EXPECT_EQ(torsion(no_drive, NOT_GIVEN).reason, Reason::TORSION_NO_DRIVE);
+    EXPECT_EQ(torsion(no_drive, NOT_GIVEN).level, VerdictLevel::NOT_JUDGED);
+  }
 }
 
 TEST(OwnReference, IsAsUncertainAsTheMeanOfItsRecordings)

@@ -448,9 +448,12 @@ TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
   EXPECT_EQ(before.reason, Reason::SOUND);
   EXPECT_NEAR(before.friction.factor, 1.0, 0.02);
   EXPECT_NEAR(before[Figure::FRICTION_OF_OWN], 1.0, 0.02);
+  EXPECT_FALSE(std::isfinite(before[Figure::CONTACT_SINCE]));
   const Verdict& touched = each_second[22];
   EXPECT_EQ(touched.level, VerdictLevel::NOT_JUDGED);
   EXPECT_EQ(touched.reason, Reason::CONTACT);
+  EXPECT_NEAR(touched[Figure::CONTACT_SINCE], 20.3, 0.2);
+  EXPECT_NEAR(touched[Figure::LARGEST_CONTACT_TORQUE], 3.0 * parameters.telemetry.torque_per_current, 5.0);
   EXPECT_FALSE(std::isfinite(touched.friction.factor));
   EXPECT_THAT(verdictText(touched), HasSubstr("touched the arm"));
   EXPECT_EQ(each_second.back().reason, Reason::SOUND);
