@@ -46,6 +46,27 @@ TEST(FrictionTrend, OfFactorsOnALineIsThatLine)
   EXPECT_TRUE(trend.departs());
 }
 
+TEST(FrictionTrend, WithoutACommonFactorItsIntervalIsThatOfARegression)
+{
+  constexpr int COUNT = 8;
+  constexpr double SCATTER = 0.1;
+  int row = 0;
+  const auto error = [&row] { return (row++ / 2) % 2 == 0 ? SCATTER : -SCATTER; };
+  const std::vector<DatedFriction> scattered = recordings(COUNT, 0.0, 0.05, error);
+  double times = 0.0;
+  double along = 0.0;
+  double squares = 0.0;
+  for (const DatedFriction& one : scattered)
+  {
+    times += std::pow(one.time - 0.5 * MONTHS, 2);
+    along += (one.time - 0.5 * MONTHS) * std::log(one.factor);
+    squares += std::pow(std::log(one.factor), 2);
+  }
+  const FrictionTrend trend = frictionTrend(scattered);
+  EXPECT_NEAR(trend.slope, along / times, 1e-15);
+  EXPECT_NEAR(trend.deviation / std::sqrt((squares - along * along / times) / (COUNT - 2) / times), 1.0, 1e-9);
+}
+
 TEST(FrictionTrend, IsNotKnownOfTooFewRecordingsOrOfOneTime)
 {
   EXPECT_FALSE(frictionTrend({}).isKnown());
