@@ -30,7 +30,7 @@ inline const Lanes* lanes(const double* values)
 
 inline bool factorSchur(double* matrix, SchurFactors& factors)
 {
-  constexpr int LANES = SCHUR / COUNT;  // lanes in a row
+  constexpr int LANES = SCHUR / COUNT;  // vectors in a row of the matrix
   bool positive = true;
 #pragma GCC unroll 16
   for (int k = 0; k < SCHUR; ++k)
@@ -38,7 +38,7 @@ inline bool factorSchur(double* matrix, SchurFactors& factors)
     const double* row = matrix + SCHUR * k;
     const double pivot = row[k];
     const double inverse = 1.0 / pivot;
-    positive = positive && pivot > 0.0 && inverse > 0.0;  // positive and not infinite
+    positive = positive && pivot > 0.0 && inverse > 0.0;  // inverse is 0 for an infinite pivot
     factors.inverse_pivots[k] = inverse;
     for (int i = 0; i < SCHUR; ++i)
     {
@@ -89,7 +89,7 @@ inline void solveSchur(const SchurFactors& factors, double* b)
   }
 }
 
-/// Collects values[stride * tooth] of the tooth in each lane.
+/// Vector whose lane k holds values[stride * first[k]].
 inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
 {
   const int* first = layout.first;
@@ -97,14 +97,14 @@ inline Lanes gather(const Layout& layout, const double* values, int stride = 1)
                 values[stride * first[3]] };
 }
 
-/// Replaces the lanes without a tooth at the first step by `value`.
+/// Replaces the values of the lanes that have no tooth at step 0 by `value`.
 inline Lanes patch(const Layout& layout, Lanes values, double value)
 {
   const Choice idle{ -layout.idle[0], -layout.idle[1], -layout.idle[2], -layout.idle[3] };
   return idle ? value + Lanes{} : values;
 }
 
-/// Factors of a tooth: the inverse of its block, and the products of the inverse and its couplings to the teeth.
+/// Factors of a tooth: the inverse of its block, and the inverse times the couplings to the next two teeth.
 struct Weights
 {
   Lanes inverse_xx, inverse_xy, inverse_yy;
@@ -112,12 +112,12 @@ struct Weights
   Lanes second_xx, second_xy, second_yx, second_yy;
 };
 
-/// Factors of a tooth, including the products of the inverse and its couplings to the border.
+/// Factors of a tooth, with the products of the inverse and the tooth's couplings to the BORDER columns.
 struct Factors : Weights
 {
   Lanes border_x[BORDER], border_y[BORDER];
 };
-static_assert(sizeof(Factors) == FACTOR_ENTRIES * sizeof(Lanes), "entries a tooth");
+static_assert(sizeof(Factors) == FACTOR_ENTRIES * sizeof(Lanes), "FACTOR_ENTRIES does not match Factors");
 
 /// Couplings of the first two teeth of each arc to the preceding separator, for the first three steps.
 struct Seeds
@@ -148,16 +148,16 @@ struct Seeds
   Lanes y[3][BORDER];
 };
 
-/// Rows of a tooth before the elimination of other teeth.
+/// Entries of the tangent for a tooth, before the elimination of the preceding teeth changes these entries.
 struct Fresh
 {
-  Lanes xx, xy, yy;  // block of the tooth
-  Lanes next[4];     // couplings to the next tooth and to the one after it
-  Lanes second[4];
+  Lanes xx, xy, yy;    // block of the tooth
+  Lanes next[4];       // couplings to the next tooth
+  Lanes second[4];     // couplings to the second next tooth
   Lanes cup_x, cup_y;  // couplings to the cup
 };
 
-/// Contributions of the eliminated teeth to the next two teeth: blocks, and couplings to the border.
+/// Contributions of the eliminated teeth to the next two teeth: to their blocks and to their couplings to the border.
 struct Carried
 {
   Lanes d_xx{}, d_xy{}, d_yy{};
@@ -195,7 +195,7 @@ inline __attribute__((always_inline)) Fresh freshRows(const Layout& layout, cons
   return fresh;
 }
 
-/// Computes the inverse of a tooth's block, and the products of the inverse and its couplings to the teeth.
+/// Computes the Weights of a tooth.
 inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carried& carried, Weights& out)
 {
   const Lanes a = fresh.xx + carried.d_xx;
@@ -224,7 +224,7 @@ inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carri
   out.second_yy = i_xy * fresh.second[1] + i_yy * fresh.second[3];
 }
 
-/// Adds the tooth's couplings to the border to the sums, and to those of the next two teeth.
+/// Eliminates the tooth's couplings to the border: changes the sums and the border couplings of the next two teeth.
 inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carried& carried, Factors& out, Lanes* sum)
 {
   for (int col = 0; col < BORDER; ++col)
@@ -237,7 +237,7 @@ inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carr
     out.border_y[col] = wy;
     for (int row = 0; row <= col; ++row)
     {
-      // (row, col) runs over the upper triangle by columns
+      // The sums are in the order of the upper triangle by columns.
       *sum++ -= (row == col ? x : carried.bx[row]) * wx + (row == col ? y : carried.by[row]) * wy;
     }
   }
@@ -252,7 +252,7 @@ inline __attribute__((always_inline)) void factorBorder(const Weights& own, Carr
   }
 }
 
-/// Adds the tooth's couplings to the teeth to the next two teeth.
+/// Computes the contributions of the eliminated tooth to the blocks of the next two teeth.
 inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Weights& out, Carried& carried)
 {
   const Lanes n_xx = carried.n_xx;
@@ -274,7 +274,7 @@ inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Wei
 
 inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
-  // Copies, because the compiler must assume that a store through a vector's pointer changes the originals.
+  // These are copies, because the compiler must assume that a store through a vector's pointer changes the arguments.
   const Layout layout = where;
   const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);
@@ -420,7 +420,7 @@ void backward(const Layout& where, const double* factors, const double* rows, co
         vx -= f->border_x[e] * lanes(before)[BORDER * c + e];
         vy -= f->border_y[e] * lanes(before)[BORDER * c + e];
       }
-      // The values that the next step depends on come last.
+      // The sum ends with the terms of the preceding steps, which are known last.
       vx -= f->second_xx * qx[c] + f->second_xy * qy[c];
       vy -= f->second_yx * qx[c] + f->second_yy * qy[c];
       vx -= f->next_xx * px[c] + f->next_xy * py[c];

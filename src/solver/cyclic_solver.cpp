@@ -45,7 +45,7 @@ bool CyclicSolver::factor(const RingTangent& tangent) noexcept
   return factorSchur(tangent, before, after, between);
 }
 
-/// Assembles and factors the matrix of separators and cup: their own entries, and the sums of the arcs.
+/// Assembles the matrix of separators and cup from the entries of the tangent and the sums of the arcs, and factors it.
 bool CyclicSolver::factorSchur(const RingTangent& tangent, const Entry* before, const Entry* after,
                                const Entry* between) noexcept
 {
@@ -109,7 +109,7 @@ bool CyclicSolver::factorSchur(const RingTangent& tangent, const Entry* before, 
   return lu.allFinite() && (lu.diagonal().array() != 0.0).all();
 }
 
-/// Solves for the separators and the cup's multiplier in place.
+/// Solves for the unknowns of the separators and the cup's multiplier. The solution replaces the right-hand side.
 void CyclicSolver::solveSchur(Separators& x, double& multiplier) const noexcept
 {
   if (pivoting_)

@@ -12,25 +12,25 @@
 
 namespace hjt
 {
-/// Direct solver for the ring's tangent: a symmetric cyclic matrix, where each tooth couples to two on either side,
-/// plus the rank-one term of the cup.
+/// Direct solver for the ring's tangent. The tangent is a symmetric cyclic matrix, where each tooth couples to two
+/// teeth on each side, plus the rank-one term of the cup.
 ///
-/// Four separators of two teeth cut the ring into arcs, which are eliminated simultaneously (arc_elimination). A dense
-/// system of 17 unknowns remains: the separators and the cup's multiplier. Without the cup the ring turns almost freely
-/// in the wave generator. Fixed separators keep the elimination well conditioned, whereas a later rank-one correction
-/// would lose all digits. The cup's unknown is eliminated first. While the ring is stable, the rest is positive
-/// definite and needs no pivoting; otherwise the solver pivots. The cost is linear in the number of teeth. Only the
-/// constructor allocates.
+/// Four separators of two teeth each divide the ring into arcs, which are eliminated simultaneously (arc_elimination)
+/// while the separators are fixed. A dense system of 17 unknowns remains: the separators and the cup's multiplier,
+/// which is eliminated first. If the ring is stable, the remaining matrix is positive definite and needs no pivoting.
+/// If not, the solver pivots. Without the cup the ring turns almost freely in the wave generator. A rank-one correction
+/// for the cup after the elimination would therefore lose all digits. The solver's cost is linear in the number of
+/// teeth. Only the constructor allocates.
 class CyclicSolver
 {
 public:
   /// @param teeth number of teeth, at least 8
   explicit CyclicSolver(int teeth, const arcs::Kernels& kernels = arcs::fastest());
 
-  /// Factors the matrix K. @returns false if it is singular or not finite.
+  /// Factors the ring's tangent K. @returns false if K is singular or not finite.
   bool factor(const RingTangent& tangent) noexcept;
 
-  /// Solves K x = b in place for 1 to 3 columns of `b` with 2 N rows.
+  /// Solves K x = b for 1 to 3 columns of `b` with two rows for each tooth. The solution replaces `b`.
   template <int COLUMNS>
   void solve(Eigen::Matrix<double, Eigen::Dynamic, COLUMNS>& b) noexcept
   {
@@ -43,7 +43,7 @@ public:
     solve(columns, COLUMNS);
   }
 
-  /// Solves for three separate right-hand sides.
+  /// Solves K x = b for three separate right-hand sides. The solutions replace them.
   void solve(Eigen::VectorXd& a, Eigen::VectorXd& b, Eigen::VectorXd& c) noexcept
   {
     double* columns[MAX_COLUMNS] = { a.data(), b.data(), c.data() };
@@ -69,12 +69,12 @@ private:
   const arcs::Kernels& kernels_;
   arcs::Layout layout_;
   std::array<int, arcs::COUNT> separator_;  // first tooth of each separator
-  Entries factors_;                         // never empty; the kernels get pointers to the first lanes
+  Entries factors_;                         // never empty, because the kernels get a pointer to the first entry
   Entries rows_;
-  arcs::SchurFactors schur_;  // factors of the separators' matrix after elimination of the cup
-  Separators cup_;            // column of the cup
-  double cup_inverse_{};      // inverse of the cup's pivot
+  arcs::SchurFactors schur_;  // factors of the matrix of the separators after elimination of the cup
+  Separators cup_;            // column of the cup's multiplier in that matrix
+  double cup_inverse_{};      // inverse of the pivot of the cup's multiplier
   bool pivoting_{};
-  Eigen::PartialPivLU<SchurWithCup> lu_;  // factors with pivoting
+  Eigen::PartialPivLU<SchurWithCup> lu_;  // factors with pivoting, used if the ring is unstable
 };
 }  // namespace hjt

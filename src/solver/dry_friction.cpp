@@ -12,15 +12,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double STICK_RANGE = 1e3;  // in regularisation speeds: below it the motor may be exactly at rest
-constexpr double SLIDING = 3e4;      // slip over the regularisation's width, from which a term is far from rest
-// slip over the regularisation's width, from which a term does not creep: friction is full to 6e-4
+// motor speed over the motor speed of the regularisation, below which the motor may be exactly at rest [-]
+constexpr double STICK_RANGE = 1e3;
+constexpr double SLIDING = 3e4;  // slip over the width of the regularisation, above which a term is far from rest [-]
+// slip over the width of the regularisation, above which a term slides: it has its full friction to 6e-4 [-]
 constexpr double MOVING = 30.0;
-constexpr double MIN_WIDTH = 1e-100;  // width of a term without slip, whose square and inverse are finite
+constexpr double MIN_WIDTH = 1e-100;  // width for a term without slip: its square and its inverse are finite
 
-/// Length of the step from `v` along `change`: the whole if the function still falls there, else up to a slope of
-/// `flat` times the first one. Only slopes are compared, because values near a minimum differ by less than their
-/// rounding. `slope` receives the gradient at the end.
+/// Length of the step from `v` along `change`: 1 if the function still falls at the end of `change`, else a length at
+/// which its slope is at most `flat` times the slope at `v` [-]. The search compares slopes only, because values near a
+/// minimum differ by less than their rounding. `slope` receives the gradient at the end of the step.
 template <class Gradient>
 double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, double flat,
                   Eigen::Vector2d& slope)
@@ -42,7 +43,7 @@ double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vec
   return length;
 }
 
-/// Newton step; with the motor at rest it changes only the output's speed.
+/// Newton step of both speeds or, without `motor_free`, of the output's speed only.
 Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d& slope, bool motor_free)
 {
   if (!motor_free)
@@ -54,7 +55,7 @@ Eigen::Vector2d newtonStep(const Eigen::Matrix2d& hessian, const Eigen::Vector2d
            -(hessian(0, 0) * slope[1] - hessian(1, 0) * slope[0]) / determinant };
 }
 
-/// Friction that acts only on the motor shaft [N.m].
+/// Sum of the dry frictions that act only on the motor shaft [N.m].
 double shaftStrength(const JointFriction& friction) noexcept
 {
   double strength = 0.0;
@@ -65,14 +66,14 @@ double shaftStrength(const JointFriction& friction) noexcept
   return strength;
 }
 
-/// Solves for one slip s under regularised friction:  s + most r(s) = free,  r = s / sqrt(s^2 + e^2).  `share` receives
-/// r.
+/// Solves s + most r = free with r = s / sqrt(s^2 + e^2) for the slip s of one term. `free`: slip without this term's
+/// friction; `most`: largest change of the slip by this friction; `e`: width of its regularisation. `share` receives r.
 /// @returns false if a few steps do not converge.
 bool solveSlip(double free, double most, double e, double& share)
 {
   constexpr int MAX_ITERATIONS = 12;
   constexpr double ENOUGH = 1e-12;
-  // Starts from the law without regularisation: the slip slides, or the friction holds it.
+  // The first guess is the solution without regularisation, in which the friction either holds the term or is full.
   const double held = most > 0.0 ? free / most : 2.0;
   double slip = std::abs(held) < 1.0 ? e * held / std::sqrt(1.0 - held * held) : free - std::copysign(most, free);
   for (int i = 0; i < MAX_ITERATIONS; ++i)
@@ -90,7 +91,8 @@ bool solveSlip(double free, double most, double e, double& share)
   return false;
 }
 
-/// A few terms that continue to slide. Its functions are inlined into `slide` for each kind of processor.
+/// The few terms of friction that continue to slide in a step. DryFriction::slide is compiled for each kind of
+/// processor, with the functions of this class inlined.
 class SlidingTerms
 {
 public:
@@ -101,7 +103,8 @@ public:
     double places{};  // sum of their indices
   };
 
-  /// `strength`: sum of all against the old slips, by motor and output. @returns false for too many terms, or none.
+  /// Stores the terms. `strength` receives their total friction on motor and output, against the old slips [N.m].
+  /// @returns false if `terms` is empty or has more than MAX_TERMS terms.
   inline __attribute__((always_inline)) bool take(const FrictionTerms& terms, const Eigen::Vector2d& old_speeds,
                                                   double follow, double width, Eigen::Vector2d& strength)
   {
@@ -151,7 +154,7 @@ public:
     return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= MOVING / SLIDING * least_[place];
   }
 
-  /// Removes a term. @returns the sign of its slip.
+  /// Removes a term. @returns the sign of its old slip.
   double leaveOut(int place)
   {
     least_[static_cast<std::size_t>(place)] = -HUGE_VAL;
@@ -164,14 +167,14 @@ private:
 
   int count_{};
   alignas(32) Numbers sense_;
-  alignas(32) Numbers by_motor_;   // slips by motor speed, with the old sign positive
-  alignas(32) Numbers by_output_;  // slips by output speed, with the old sign positive
+  alignas(32) Numbers by_motor_;   // slip per motor speed, with the sign that makes the old slip positive
+  alignas(32) Numbers by_output_;  // slip per output speed, with the sign that makes the old slip positive
   alignas(32) Numbers least_;      // least slip of a term that continues to slide
 };
 }  // namespace
 
-/// Slip speed at which a term has half of its friction: the slip at the regularising motor speed, with the output
-/// following or held, whichever is larger.
+/// Width of the regularisation, the slip speed at which a term has 71 % of its friction. It is the sum of the slips by
+/// the motor speed `stiction_velocity` and by the output speed that belongs to it.
 double DryFriction::width(const FrictionTerm& term, double velocity_ratio) const noexcept
 {
   return width_ * (std::abs(term.slip[0]) + std::abs(velocity_ratio * term.slip[1])) + MIN_WIDTH;
@@ -213,11 +216,11 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
                         const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept
 {
   constexpr int MAX_ITERATIONS = 100;
-  constexpr int FEW = 15;           // iterations; 1 of 300 random problems needs more
-  constexpr double ENOUGH = 1e-12;  // relative change of the speeds
-  constexpr double ROUNDED = 1e-9;  // relative change of speeds that differ in their last digits only
-  constexpr double FLAT = 0.1;      // final slope of a search over its first slope
-  constexpr double FLATTER = 1e-3;  // the same ratio for a search that must end at a kink, where a term sticks
+  constexpr int FEW = 15;           // number of iterations that suffices for all but 1 of 300 random problems
+  constexpr double ENOUGH = 1e-12;  // relative change of the speeds that ends the iteration
+  constexpr double ROUNDED = 1e-9;  // relative change that counts as rounding of the speeds
+  constexpr double FLAT = 0.1;      // slope at the end of a line search over the slope at its start
+  constexpr double FLATTER = 1e-3;  // this ratio for a line search that must end at a kink, where a term sticks
   Eigen::Matrix2d linear = 0.5 * step * friction.viscous;
   const Eigen::Vector2d drag = linear * old_speeds - inertia_.cwiseProduct(free_speeds);
   linear.diagonal() += inertia_;
@@ -229,7 +232,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return linear * v + drag + step * dry.first;
   };
 
-  // Minimises over both speeds or, with the motor at rest, over the output's speed.
+  // Minimises over both speeds or, without `motor_free`, over the output's speed.
   Eigen::Vector2d slope;
   const auto descend = [&](Eigen::Vector2d& v, bool motor_free)
   {
@@ -249,7 +252,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return !changes(ROUNDED);
   };
 
-  // Sets the motor at rest if friction can hold it.
+  // Sets the motor at rest. Returns whether the friction on its shaft can hold it.
   const auto rests = [&](Eigen::Vector2d& v)
   {
     v[0] = 0.0;
@@ -293,15 +296,15 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   {
     return false;
   }
-  if (stops.number > 0.0)  // this term may be the unknown
+  if (stops.number > 0.0)  // a term that does not slide: its share of friction is the unknown
   {
     const auto nearest = static_cast<int>(stops.places);
     const FrictionTerm term = friction.terms[nearest];
     const double strongest = step * term.strength;
     const Eigen::Vector2d response = answer(term.slip);
-    v += strongest * sliding.leaveOut(nearest) * response;    // speeds without this term
-    const double most = strongest * term.slip.dot(response);  // slip that this term can remove
-    double share = 0.0;                                       // mobilised share of its strength
+    v += strongest * sliding.leaveOut(nearest) * response;    // speeds without the friction of this term
+    const double most = strongest * term.slip.dot(response);  // slip that the friction of this term can remove
+    double share = 0.0;                                       // mobilised share of the strength of this term
     if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;
@@ -320,7 +323,8 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   return true;
 }
 
-/// Whether a term moves before the step and is at rest or reversed after it, or the opposite.
+/// Whether any term slides at the speeds `before`, and at the speeds `after` is at rest or slides in the other
+/// direction.
 HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
                                              const Eigen::Vector2d& after) const noexcept
 {
@@ -346,10 +350,11 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
                                       const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
                                       double step, JointFriction& sticking) const noexcept
 {
-  constexpr int MAX_PARTS = 16;  // teeth stop one after the other, up to ten in a step
-  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // in the step without friction
+  constexpr int MAX_PARTS = 16;  // parts of a step; teeth stop one after the other, up to ten in a step
+  // change of the speeds in the step without friction [rad/s]
+  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;
   KickedSpeeds speeds{ old_speeds, old_speeds };
-  double rest = 1.0;  // remaining part of the step
+  double rest = 1.0;  // remaining share of the step [-]
   const auto go_on = [&](double share, const Eigen::Vector2d& to)
   {
     if (rest >= 0.5 && rest * (1.0 - share) <= 0.5)
@@ -393,7 +398,7 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
     }
     Eigen::Vector2d onward;
     const bool found = solve(sticking, velocity_ratio, speeds.after, free, rest * step, onward);
-    double share = 1.0;  // part of the rest, up to the first stop
+    double share = 1.0;  // share of the remaining time before a term stops [-]
     for (const FrictionTerm term : friction.terms)
     {
       const double before = term.slip.dot(speeds.after);

@@ -15,13 +15,16 @@ struct KickedSpeeds
   bool solved{ true };  ///< false: the friction problem was not solved and the speeds are invalid
 };
 
-/// Speeds after a time step with implicit friction. They minimise
+/// Solver for the speeds v of motor and output after a time step with implicit friction. They minimise
 ///
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
+/// where  v_free  speeds without friction, v_old  speeds before the step [rad/s]; h  length of the step [s]
+///        M  inertias, D  viscous matrix; c_j  strength and a_j  slip of dry term j; e_j  width of its regularisation
 ///
-/// The function is convex, so it has one minimum for any step: friction sticks, slides and reverses without a change of
-/// mode. e_j regularises the kink at the motor speed `stiction_velocity`. The method is Newton's with line search in 2
-/// unknowns. A motor that friction on its shaft can hold comes to rest exactly.
+/// The function is convex and has one minimum for any step. Friction therefore sticks, slides and reverses without a
+/// change of mode. e_j rounds the kink at rest over slips at the motor speed `stiction_velocity`. The method is
+/// Newton's with line search. If the friction on the motor's shaft can hold the motor, the motor's speed becomes
+/// exactly zero.
 class DryFriction
 {
 public:
@@ -29,25 +32,27 @@ public:
   {
   }
 
-  /// A copy with another inertia of the motor [kg.m^2].
+  /// Copy of this solver with another inertia of the motor [kg.m^2].
   DryFriction withMotor(double inertia) const { return { Eigen::Vector2d(inertia, inertia_[1]), width_ }; }
 
   void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< sets the inertia of the output [kg.m^2]
 
-  /// Solves for `speeds`. `velocity_ratio`: output speed over motor speed while the drive runs; it scales the
-  /// regularisation of slips at the output. @returns false if the minimum was not found; `speeds` are then invalid.
+  /// Computes the `speeds` after the step. `velocity_ratio`: output speed over motor speed while the drive runs, which
+  /// scales the regularisation of slips at the output. @returns false if the minimum was not found; `speeds` are then
+  /// invalid.
   [[nodiscard]] bool solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
-  /// Solves in parts if a moving term comes to rest within the step. Until then the term slides, and terms at rest
-  /// stick. `free_momentum`: M v_free [N.m.s]; `sticking`: working memory.
+  /// Computes the speeds like `solve`. If a sliding term stops within the step, the step is divided at this instant.
+  /// Before the instant the term slides, and terms at rest stick. `free_momentum`: M v_free [N.m.s]; `sticking`:
+  /// working memory.
   KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 
-  /// Solves for the case that every term, except perhaps one at rest, slides far from rest in its old direction. The
-  /// problem is then linear with at most one unknown. @returns false and does nothing in other cases, for example at
-  /// rest. The result differs from that of `solve` by the tails of the regularisation, less than 1e-9 of the friction.
-  /// `free_momentum`: M v_free [N.m.s].
+  /// Computes the speeds like `solve` in the case that all terms, or all except one, slide far from rest in their old
+  /// direction. The problem is then linear with at most one unknown. @returns false and does nothing in other cases,
+  /// for example at rest. The result differs from that of `solve` by less than 1e-9 of the friction, because `slide`
+  /// neglects the regularisation of sliding terms. `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
 
@@ -55,10 +60,10 @@ public:
   Eigen::Vector2d torque(const JointFriction& friction, double velocity_ratio,
                          const Eigen::Vector2d& speeds) const noexcept;
 
-  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }  ///< of motor and output [kg.m^2]
+  const Eigen::Vector2d& inertia() const noexcept { return inertia_; }  ///< inertia of motor and output [kg.m^2]
 
 private:
-  /// Derivatives of sum_j c_j sqrt((a_j v)^2 + e_j^2) by the speeds.
+  /// First and second derivatives of sum_j c_j sqrt((a_j v)^2 + e_j^2) by the speeds v.
   struct Slopes
   {
     Eigen::Vector2d first;

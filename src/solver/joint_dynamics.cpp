@@ -22,7 +22,8 @@ SolveStatus JointDynamics::solveAtRest() noexcept
 {
   constexpr int MAX_ITERATIONS = 50;
   SolveStatus result = ring_.insert({ 0.0, 0.0, model_->ring.gear.wave_amplitude });
-  // Gravity changes with the output angle. The joint is stiff, so that iterating with constant gravity converges fast.
+  // Each iteration assumes a constant torque of gravity. The joint is stiff, so the output angle, and with it the
+  // torque of gravity, changes little between iterations.
   double torque = 0.0;
   for (int i = 0; result.ok(); ++i)
   {
@@ -74,7 +75,7 @@ SolveStatus JointDynamics::place(double motor_angle, double output_angle) noexce
   {
     return {};
   }
-  if (on_surface_ && !bringRing())  // the rest of the way is short
+  if (on_surface_ && !bringRing())  // placeRing moves the ring from the last angles to the new ones
   {
     return status;
   }
@@ -108,16 +109,16 @@ SolveStatus JointDynamics::updateModel() noexcept
   if (result.ok() &&
       (ring_.position().wave_generator_angle != motor_angle_ || ring_.position().output_angle != output_angle_))
   {
-    result = ring_.reach(position()).addEffort(result);  // the attempt before had failed
+    result = ring_.reach(position()).addEffort(result);  // the last move of the ring had failed
   }
   viscosity_ = model_->bearing.viscosity(temperature_);
   takeRing();
-  accept();  // slip in this step is part of the energy that the change releases
+  accept();  // energy that slip dissipates here counts as released by the change of the model
   return result;
 }
 
-/// Moves the full ring from its last position to the present angles on the surface. @returns false without an
-/// equilibrium.
+/// Moves the full ring from its last position to the present angles of the joint on the surface. @returns false if the
+/// ring has no equilibrium at these angles.
 bool JointDynamics::bringRing() noexcept
 {
   const SolveStatus brought = ring_.reach(position());
@@ -126,7 +127,7 @@ bool JointDynamics::bringRing() noexcept
   return brought.ok();
 }
 
-/// Stores the reason of a failed solve.
+/// Stores code and stage of a failed solve in `status`.
 void JointDynamics::note(const SolveStatus& solved) noexcept
 {
   if (!solved.ok())
@@ -136,7 +137,7 @@ void JointDynamics::note(const SolveStatus& solved) noexcept
   }
 }
 
-/// Takes over the full ring's equilibrium as the present one.
+/// Makes the full ring's equilibrium the present equilibrium of the joint.
 void JointDynamics::takeRing() noexcept
 {
   friction_is_of_ring_ = false;
@@ -158,13 +159,13 @@ void JointDynamics::takeRing() noexcept
   slideShaft();
 }
 
-/// Sets the internal state of the friction by the surface's response at the present angles.
+/// Updates the internal state of the friction for the present angles, with torques and stiffness from the surface.
 void JointDynamics::takeSurface() noexcept
 {
   friction_is_of_ring_ = false;
   if (model_->cup_friction.hasState())
   {
-    // The rim rotates by the torque between it and the housing.
+    // The torque between rim and housing twists the cup and so determines the rotation of the rim.
     const auto& cup = model_->ring.of<CupTorsion>();
     const double torque = -(response_.wave_generator_torque + response_.output_torque);
     turnCup(cup.rotationAtTorque(torque), housing_stiffness_ * cup.complianceAtTorque(torque));
@@ -196,7 +197,7 @@ double JointDynamics::accept() noexcept
   }
   const double slipped = now_.cup.slipped;
   now_.cup.slipped = 0.0;
-  // Copies only the state, because a copy of the whole must wait for the last stores.
+  // A copy of all of `now_.cup` would be slow, because it waits for the last writes to `now_.cup`.
   accepted_.cup.twist = now_.cup.twist;
   accepted_.cup.rotation = now_.cup.rotation;
   if (model_->motor.preslidingAngle() > 0.0)
@@ -211,13 +212,13 @@ double JointDynamics::accept() noexcept
   return slipped;
 }
 
-/// Whether the surface has the torque of the full ring at the present angles, well within its edges. After a jump of
-/// teeth it has not.
+/// Whether the present angles are well within the edges of the surface and the surface has the torque of the full ring
+/// there. After a jump of teeth the torques differ.
 bool JointDynamics::surfaceAgrees() const noexcept
 {
-  constexpr double MARGIN = 0.05;   // share of the surface's range
-  constexpr double TABLED = 2e-6;   // error of the output's angle at given torque [rad]
-  constexpr double BETWEEN = 2e-5;  // the same error of an interpolated surface; a jump of a tooth is 3e-2
+  constexpr double MARGIN = 0.05;   // least distance from the edges, as a share of the surface's range [-]
+  constexpr double TABLED = 2e-6;   // largest error of a solved surface, as output angle at equal torque [rad]
+  constexpr double BETWEEN = 2e-5;  // largest error of an interpolated surface; a jump of a tooth is 3e-2 [rad]
   ResponseSurface::Place place;
   if (!surface_->locate(motor_angle_, output_angle_, place) || surface_->nearEdge(place, MARGIN))
   {
@@ -264,7 +265,7 @@ void JointDynamics::updateFriction(const Eigen::Vector2d& speeds) noexcept
   friction_is_of_ring_ = true;
 }
 
-/// Torque that the brake holds the shaft with, at the present angle.
+/// Torque with which the brake holds the motor's shaft at the present angle [N.m].
 double JointDynamics::brakeTorque(double motor_speed) noexcept
 {
   now_.pin = accepted_.pin;
@@ -272,7 +273,7 @@ double JointDynamics::brakeTorque(double motor_speed) noexcept
   return model_->brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
 }
 
-/// Effective viscosity of the bearing's grease at the present temperature.
+/// Effective viscosity of the bearing's grease at the present temperature [m^2/s].
 double JointDynamics::viscosity() noexcept
 {
   if (inputs.temperature != temperature_)
@@ -305,7 +306,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   {
     return;
   }
-  // The torque of the current is a state, or follows at once.
+  // The torque of the current is a state of the joint if the current lags; if not, it is the limited command.
   drive_torque =
       model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
   updateFriction(speeds);

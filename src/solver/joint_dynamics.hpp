@@ -12,7 +12,7 @@
 
 namespace hjt
 {
-/// State of the joint and its energy account. Boost.odeint can integrate this plain vector.
+/// State of the joint and its energy account, as a plain vector that Boost.odeint can integrate.
 using JointState = Eigen::Matrix<double, 8, 1>;
 
 namespace joint_state
@@ -27,13 +27,14 @@ constexpr int DISSIPATED = 6;    ///< energy that all friction has dissipated [J
 constexpr int DRIVE_TORQUE = 7;  ///< torque of the motor's current at 25 degC [N.m]
 }  // namespace joint_state
 
-/// Right-hand side of the joint's equation of motion: a rigid body with four states and a ring that is always in
-/// equilibrium.
+/// Right-hand side of the joint's equation of motion. Motor and output are rigid, and the ring between them is always
+/// in equilibrium.
 ///
-/// The equilibrium is that of the full ring by Newton's method or, if there is a response surface, that of the surface
-/// where it contains the angles. The change to the surface requires that ring and surface agree.
+/// If there is a response surface and its range contains the angles, the equilibrium comes from the surface. Otherwise
+/// Newton's method solves the full ring. The change from ring to surface requires that their torques agree.
 ///
-/// Boost.odeint's explicit steppers call `system(x, dxdt, t)`; the leapfrog uses the parts.
+/// Boost.odeint's explicit steppers call `system(x, dxdt, t)`. Leapfrog calls the other functions of this class
+/// instead.
 class JointDynamics
 {
 public:
@@ -42,55 +43,55 @@ public:
   /// Inserts the wave generator and balances the output's load with the motor at angle 0.
   SolveStatus solveAtRest() noexcept;
 
-  /// Uses this surface where it is valid, else the full ring; null: the full ring alone. The surface must outlive its
-  /// use.
-  /// @returns false if the full ring has no equilibrium at the present angles on the surface. Angles and torques then
-  /// stay,
-  /// although the full ring is elsewhere.
+  /// Uses this surface for angles in its range, and the full ring for other angles. `surface`: null for the full ring
+  /// alone; it must outlive its use. @returns false if the full ring has no equilibrium at the present angles on the
+  /// surface. Angles and torques then stay, although the full ring is at other angles.
   [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
-  /// Solves the full ring at the present angles after a change of the model.
+  /// Solves the full ring at the present angles. Must be called after a change of the model.
   SolveStatus updateModel() noexcept;
 
   /// Whether the present equilibrium is that of the surface.
   bool onSurface() const noexcept { return on_surface_; }
   const ResponseSurface* surface() const noexcept { return surface_; }            ///< surface in use; null: none
-  const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< valid on the surface
+  const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< valid if onSurface()
 
-  /// Present position. While the surface is in use, the full ring may be elsewhere.
+  /// Present angles of the joint. While the joint is on the surface, the full ring may be at other angles.
   DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_->ring.gear.wave_amplitude }; }
 
-  /// Solves the equilibrium at these angles. On failure the last converged ring stays.
+  /// Solves the equilibrium at these angles, from the surface or the full ring. On failure the last converged ring
+  /// stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
-  /// Takes the equilibrium from the surface if it is in use or agrees with the ring. @returns false and does nothing
-  /// otherwise.
+  /// Takes the equilibrium from the surface if the joint is on the surface, or if surface and ring agree. @returns
+  /// false and does nothing in other cases.
   bool placeOnSurface(double motor_angle, double output_angle) noexcept;
 
-  /// Commits the internal state of the friction at the present ring. @returns the energy that the cup's friction
-  /// dissipated [J].
+  /// Makes the internal state of the friction at the present angles the start of the next motion. @returns the energy
+  /// that the cup's friction dissipated since the last call [J].
   double accept() noexcept;
 
-  /// Torques at the present ring, without dry and viscous friction [N.m].
+  /// Torques on motor and output at the present angles, without dry and viscous friction [N.m].
   Eigen::Vector2d torque() const noexcept
   {
     return model_->torque(response_, position(), shaftTorque(), inputs.load()) - now_.cup.torque * cup_rates_;
   }
 
-  /// Torque of the drive at the temperature of its magnets, without ripple [N.m].
+  /// Torque of the motor at the temperature of its magnets, without ripple [N.m].
   double shaftTorque() const noexcept { return drive_torque * model_->motor.torqueFactor(inputs.temperature); }
 
-  /// Torque of the drive at the present motor angle [N.m], and its ratio to the torque of the current [-].
+  /// Torque of the motor with ripple at the present angle [N.m]. driveGain: its ratio to the torque of the current [-].
   double driveTorque() const noexcept { return model_->motor.rippled(shaftTorque(), motor_angle_); }
   double driveGain() const noexcept
   {
     return model_->motor.rippled(model_->motor.torqueFactor(inputs.temperature), motor_angle_);
   }
 
-  /// Friction at the motor shaft that builds up over its presliding angle, at the present ring [N.m].
+  /// Torque by the friction at the motor shaft that builds up over the presliding angle, at the present angles [N.m].
   double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
 
-  /// Stiffness of the joint by friction with a state, at the present ring [N.m/rad].
+  /// Stiffness by friction with a state (cup and presliding) by motor and output angle, at the present angles
+  /// [N.m/rad].
   Eigen::Matrix2d frictionStiffness() const noexcept
   {
     Eigen::Matrix2d stiffness = now_.cup.stiffness * cup_rates_ * cup_rates_.transpose();
@@ -101,11 +102,11 @@ public:
     return stiffness;
   }
 
-  /// Computes `friction()` for the present ring; `speeds`: of motor and output [rad/s].
+  /// Computes `friction()` for the present angles. `speeds`: speeds of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
 
-  /// Solves DryFriction::stopOrSlide with the present friction. On failure the joint is set to rest and `status` says
-  /// so.
+  /// Calls DryFriction::stopOrSlide with the present friction. On failure the returned speeds are zero and `status` has
+  /// the reason.
   KickedSpeeds stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before, const Eigen::Vector2d& momentum,
                            double dt) noexcept;
 
@@ -117,7 +118,7 @@ public:
     model_ = &copied;
     ring_.setModel(copied.ring);
   }
-  /// Inertia of motor and output, with that of an arm if it is coupled [kg.m^2].
+  /// Inertia of motor and output. If the joint is in an arm, the output's inertia includes the arm's [kg.m^2].
   const Eigen::Vector2d& inertia() const noexcept { return inertia_; }
   void setOutputInertia(double inertia) noexcept
   {
@@ -129,13 +130,13 @@ public:
   const RingResponse& response() const noexcept { return response_; }
   const JointFriction& friction() const noexcept { return friction_; }
   const DryFriction& dryFriction() const noexcept { return dry_; }
-  /// Output speed over motor speed at constant load, from the stiffness of the ring [-].
+  /// Output speed over motor speed at constant load, which follows from the stiffness of the ring [-].
   double velocityRatio() const noexcept { return response_.velocity_ratio; }
   double storedEnergy() const noexcept { return model_->storedEnergy(response_, position()) + now_.cup.energy; }
 
   JointInputs inputs;
   double drive_torque{};  ///< torque of the motor's current at 25 degC, after limit and lag [N.m]
-  SolveStatus status;     ///< worst status since the reader last cleared it
+  SolveStatus status;     ///< reason of the last failed solve and effort of all solves since the caller cleared it
 
 private:
   bool bringRing() noexcept;
@@ -149,7 +150,7 @@ private:
   double viscosity() noexcept;
   double brakeTorque(double motor_speed) noexcept;
 
-  /// Internal state of the friction after a motion to some angles.
+  /// Internal state of the friction after a motion.
   struct Memory
   {
     CupFriction::State cup;
@@ -161,24 +162,24 @@ private:
   const JointModel* model_;
   Eigen::Vector2d inertia_;
   RingEquilibrium ring_;
-  RingResponse response_;  // at the present angles
-  double motor_angle_{};   // of the present equilibrium [rad]
+  RingResponse response_;  // energy, torques and stiffness at the present angles
+  double motor_angle_{};   // motor angle of the present equilibrium [rad]
   double output_angle_{};
   const ResponseSurface* surface_{};
   ResponseSurface::Place place_{};
-  Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // on the surface, by motor and output angle [N.m/rad]
+  Eigen::Vector2d housing_stiffness_{ 0.0, 0.0 };  // see ResponseSurface::response [N.m/rad]
   bool on_surface_{};
-  bool surface_agrees_{};  // at the present angles of the full ring
+  bool surface_agrees_{};  // surfaceAgrees() at the present angles
   DryFriction dry_;
   JointFriction friction_;
   bool friction_is_of_ring_{};  // whether friction_ belongs to the present equilibrium of the full ring
   JointFriction sticking_;      // working memory: friction of the terms that stick
   bool remembers_;              // whether the friction has a state
   Memory accepted_;
-  Memory now_;  // at the present ring
-  // derivatives of the rim's mean rotation by motor and output angle, if needed
+  Memory now_;  // state at the present angles
+  // derivatives of the rim's mean rotation by motor and output angle, if the cup's friction has a state [-]
   Eigen::Vector2d cup_rates_{ 0.0, 0.0 };
-  double temperature_;  // for which viscosity_ is valid [degC]
+  double temperature_;  // temperature for which viscosity_ is valid [degC]
   double viscosity_;    // [m^2/s]
 };
 }  // namespace hjt

@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// Speeds for the strength of friction in a kick: means of their magnitude over the kick, by linear extrapolation from
-/// the speeds at its beginning and half a kick earlier [rad/s].
+/// Mean magnitudes of the speeds over a kick, with the sign of `before`, for the strength of friction [rad/s]. The
+/// speeds are extrapolated from those at the kick's beginning (`before`) and half a kick earlier (`earlier`).
 Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
 {
   Eigen::Vector2d mean;
@@ -29,8 +29,7 @@ Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector
   return mean;
 }
 
-/// Speeds after a kick, given the momentum after it without friction [N.m.s]. On the surface the friction has few terms
-/// and this function is the time-critical one.
+/// Speeds after a kick. `momentum`: momentum of motor and output after a kick without friction [N.m.s].
 KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
                  const Eigen::Vector2d& momentum, double dt) noexcept
 {
@@ -42,11 +41,11 @@ KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen
   return system.stopOrSlide(friction, before, momentum, dt);
 }
 
-/// Speeds after a kick in which the drive's torque decreases with the speed at the kick's end. The iteration has one
-/// solution and does not overshoot, however steep the decrease. `system` receives the drive's torque.
+/// Speeds after a kick in which the motor's torque decreases with the speed at the kick's end, near the speed limit.
+/// The solution is unique and does not overshoot, however steep the decrease is. `system` receives the motor's torque.
 ///
-/// `others`: torques except the drive's and friction [N.m]; `kept`: remaining part of the drive's old torque [N.m];
-/// `share`: part of the wanted torque that the current reaches [-].
+/// `others`: torques except those of motor and friction [N.m]; `kept`: part of the motor's old torque that the lagging
+/// current keeps [N.m]; `share`: part of the wanted torque that the current reaches [-].
 KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
                   const Eigen::Vector2d& before, double dt) noexcept
 {
@@ -70,8 +69,8 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
   return speeds;
 }
 
-/// Speeds after a kick by `others` (see `fade`) and by a drive that either reduces its torque by the final speed or has
-/// the whole, `full` [N.m]. The case of the kick's beginning is tried first.
+/// Speeds after a kick by the torques `others` (see `fade`) and by the motor. The motor either has its whole torque
+/// `full` [N.m] or reduces it by the speed at the kick's end. The case at the kick's beginning is tried first.
 KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
                    const Eigen::Vector2d& before, double dt) noexcept
 {
@@ -93,8 +92,8 @@ KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double 
 }
 }  // namespace
 
-/// Speeds after a kick over `dt`. `rubbing`: speeds for the friction's strength [rad/s]; `lag`: remaining part of the
-/// drive's torque in the last kick [-].
+/// Speeds after a kick of length `dt` [s]. `rubbing`: speeds for the friction's strength [rad/s]; `lag`: part of the
+/// motor's torque of the last kick that the lagging current keeps [-].
 KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::Vector2d& before,
                             const Eigen::Vector2d& rubbing, double lag, double dt) noexcept
 {
@@ -120,8 +119,8 @@ KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::V
   return speeds;
 }
 
-/// Whether the present inputs act differently from those of the last kick. A current that lags does not jump; the arm's
-/// load belongs to the end of a step.
+/// Whether a jump of the inputs since the last kick requires `retake`. A lagging current does not jump. The arm's
+/// torque is not compared, because it belongs to the end of a step.
 bool Leapfrog::actOtherwise(const JointDynamics& system) const noexcept
 {
   const JointInputs& now = system.inputs;
@@ -154,8 +153,8 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<2>(MOTOR_ANGLE) = angles;
   x.segment<2>(MOTOR_SPEED) = after;
 
-  // The work over half the way belongs before the instant, the rest after it. The only error of the account is then the
-  // quadrature.
+  // The works of the first half of the kick belong before the instant of the angles, those of the second half after it.
+  // The only error of the energy account is then the quadrature.
   const Eigen::Vector3d until = works(system, before, dt);
   rest_ = works(system, after, dt);
   x[DISSIPATED] += slipped;
@@ -165,7 +164,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<3>(MOTOR_WORK) += until + rest_;
 }
 
-/// Works of the last kick's torques over half a step at these speeds, in the order of the state [J].
+/// Works of motor, load and friction in the last kick over half a step at these speeds, in the order of the state [J].
 Eigen::Vector3d Leapfrog::works(const JointDynamics& system, const Eigen::Vector2d& speeds, double dt) const noexcept
 {
   return 0.5 * dt *
@@ -187,9 +186,10 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   }
   x.segment<3>(MOTOR_WORK) -= rest_;
   retaken_ += 0.5 * inertia_.cwiseProduct(half_kick_.cwiseAbs2());
-  // If something stopped within the kick, the speed in the middle is not the mean that the works belong to.
+  // The works were computed with the mean speed of the kick. If a friction term stopped within the kick, the speed in
+  // the middle of the kick differs from this mean.
   x[DISSIPATED] += 0.5 * inertia_.dot(speeds_.cwiseAbs2() - halfway_.cwiseAbs2());
-  // An arm changed the output's inertia at the speeds that are taken back.
+  // If an arm changed the output's inertia, the kinetic energy changed at the speeds that are now undone.
   x[LOAD_WORK] += 0.5 * (inertia - inertia_).dot(x.segment<2>(MOTOR_SPEED).cwiseAbs2() - halfway_.cwiseAbs2());
   speeds_ = halfway_;
 
@@ -206,7 +206,7 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   system.inputs.arm_torque = arm_torque;
 }
 
-/// Sets the joint to rest at the last instant.
+/// Sets the joint to rest at its last angles.
 void Leapfrog::stop(const JointDynamics& system, JointState& x) noexcept
 {
   using namespace joint_state;
@@ -227,8 +227,8 @@ using namespace joint_state;
 
 namespace
 {
-// phase of the joint's fastest oscillation in a substep, as a share of `phase_limit_`; below 1, because friction under
-// load stiffens the joint [-]
+// wanted phase of the joint's fastest oscillation in a substep, as a share of `phase_limit_` [-]; below 1, because
+// friction under load stiffens the joint
 constexpr double AIM = 0.8;
 }  // namespace
 
@@ -238,9 +238,9 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
   if (!reset())
   {
     throw ParameterError(
-        "these parameters have no equilibrium: the insertion of the wave generator did not converge "
-        "(gear.*, ring.*, contact.*, mesh.*, cup.*; largest remaining force " +
-        roundedText(dynamics_.status.residual, 6) + " N)");
+        "the gear has no equilibrium with these parameters: the insertion of the wave generator did not converge "
+        "(largest remaining force " +
+        roundedText(dynamics_.status.residual, 6) + " N). Check gear.*, ring.*, contact.*, mesh.* and cup.*");
   }
   prepareDivision(parameters);
   const double fastest = frequency(dynamics_.inertia()[1]);
@@ -250,8 +250,8 @@ JointStepper::JointStepper(const Parameters& parameters, const JointModel& model
     TextStream text;
     text << "solver.rate = " << parameters.solver.rate << " Hz is too low. With inertias of " << dynamics_.inertia()[0]
          << " kg.m^2 at the motor and " << dynamics_.inertia()[1] << " kg.m^2 at the output the joint can oscillate at "
-         << fastest << " rad/s. This needs at least " << fastest / longest
-         << " Hz, or a larger output.load_inertia, cup.friction_angle or motor.presliding_angle";
+         << fastest << " rad/s. Raise solver.rate to at least " << fastest / longest
+         << " Hz, or raise output.load_inertia, cup.friction_angle or motor.presliding_angle";
     throw ParameterError(text.str());
   }
   substeps_ = substepsFor(fastest * step_);
@@ -267,23 +267,22 @@ void JointStepper::prepareDivision(const Parameters& parameters) noexcept
   motor_square_ = stiffest_ / (motor * ratio * ratio) + dynamics_.model().motor.coggingStiffness() / motor;
   if (parameters.motor.presliding_angle > 0.0)
   {
-    // After a reversal, from full friction.
+    // The friction is stiffest after a reversal from full friction.
     dynamics_.updateFriction({ 0.0, 0.0 });
     motor_square_ += 2.0 * dynamics_.friction().presliding / parameters.motor.presliding_angle / motor;
   }
 }
 
-/// Angular frequency of the fastest motion: output and motor oscillate against each other on the stiffest slope of the
-/// cup [rad/s].
+/// Angular frequency of the fastest oscillation of motor against output, on the stiffest slope of the cup [rad/s].
 double JointStepper::frequency(double output_inertia) const noexcept
 {
   return std::sqrt(stiffest_ / output_inertia + motor_square_);
 }
 
-/// `phase`: of that oscillation in an undivided step [rad].
+/// `phase`: phase of the fastest oscillation of motor against output in an undivided step [rad].
 int JointStepper::substepsFor(double phase) const noexcept
 {
-  constexpr double LENGTH = 1e-4;  // longest substep that contacts and friction allow, for any phase [s]
+  constexpr double LENGTH = 1e-4;  // longest substep of a divided step, for contacts and friction [s]
   if (phase <= phase_limit_)
   {
     return 1;
@@ -325,13 +324,14 @@ void JointStepper::setOutputInertia(double inertia) noexcept
     phase_limit_ = MAX_PHASE_ADVANCE_IN_ARM;
     divideAgain(inertia);
   }
-  // The speed does not change, so the energy of the output changes by the work of the arm.
+  // The output keeps its speed, so the change of its kinetic energy is the work of the arm.
   const double speed = x_[OUTPUT_SPEED];
   x_[LOAD_WORK] -= 0.5 * (inertia - dynamics_.inertia()[1]) * speed * speed;
   dynamics_.setOutputInertia(inertia);
 }
 
-/// Increases the number of substeps if the phase exceeds its limit, and reduces it if fewer meet the aim.
+/// Increases the number of substeps if the phase of a substep exceeds `phase_limit_`. Reduces the number if the phase
+/// then still meets AIM.
 void JointStepper::divideAgain(double output_inertia) noexcept
 {
   const double phase = frequency(output_inertia) * step_;
@@ -348,7 +348,7 @@ void JointStepper::divideAgain(double output_inertia) noexcept
 
 bool JointStepper::staysAtRest(const JointInputs& inputs) const noexcept
 {
-  constexpr double SETTLED = 1e-9;  // relative difference between the current's torque and the wanted one
+  constexpr double SETTLED = 1e-9;  // torque of the current minus the wanted torque, relative to the wanted torque [-]
   const JointInputs& last = dynamics_.inputs;
   return rest_steps_ * step_ >= REST_TIME && inputs.motor_torque == last.motor_torque &&
          std::abs(x_[DRIVE_TORQUE] - inputs.motor_torque) <= SETTLED * std::abs(inputs.motor_torque) &&
@@ -398,7 +398,7 @@ bool JointStepper::substep() noexcept
   return dynamics_.status.ok();
 }
 
-/// Squared angular frequencies of motor and output, each with the other held [rad^2/s^2].
+/// Squared angular frequencies of the motor with the output held, and of the output with the motor held [rad^2/s^2].
 Eigen::Vector2d JointStepper::swingSquares() const noexcept
 {
   const RingResponse& ring = dynamics_.response();
@@ -420,7 +420,7 @@ double JointStepper::phaseAdvance() const noexcept
 
 bool JointStepper::isCoarse() const noexcept
 {
-  // The square of the highest frequency is at most the sum of the squares.
+  // swingSquares().sum() is an upper bound of the squared frequency, so that most calls do not need phaseAdvance().
   return substep_ * substep_ * swingSquares().sum() > phase_limit_ * phase_limit_ && phaseAdvance() > phase_limit_;
 }
 

@@ -10,15 +10,16 @@ namespace hjt
 {
 /// Staggered leapfrog with implicit friction. It fulfils Boost.odeint's stepper concept.
 ///
-/// Between two calls the speeds of the state are half a step ahead of its angles (Moreau's time stepping):
-///   angles += h speeds;  ring at the new angles;  speeds: changed by the torques there, with implicit friction
-/// A step needs one solve of the ring. The method has order 2 and is symplectic without friction. The angle of a joint
-/// that sticks is constant to the last bit, because its speeds already include friction.
+/// Between two steps the speeds of the state are half a step ahead of its angles (Moreau's time stepping). A step of
+/// length h first adds h times the speeds to the angles. The ring is then solved at the new angles. The kick, the
+/// second part of the step, changes the speeds by the torques at these angles, with implicit friction. A step needs one
+/// solve of the ring. The method has order 2 and is symplectic without friction. The angle of a joint that sticks is
+/// constant to the last bit, because its speeds already include friction.
 ///
-/// `system` is a JointDynamics whose inputs act from the beginning of a step. Half of each kick, the change of the
-/// speeds, belongs to the following step; if the inputs jump, that half is repeated with the new inputs. The first step
-/// begins with speeds at the instant of the angles. If the ring does not converge, the angles stay, the joint is set to
-/// rest, its kinetic energy counts as dissipated, and `system.status` says so.
+/// `system` is a JointDynamics whose inputs act from the beginning of a step. The second half of each kick belongs to
+/// the following step. If the inputs jump, this half is repeated with the new inputs. The first step begins with speeds
+/// at the instant of the angles. If the ring does not converge, the angles stay, the joint is set to rest, its kinetic
+/// energy counts as dissipated, and `system.status` has the reason.
 class Leapfrog
 {
 public:
@@ -33,10 +34,10 @@ public:
 
   void do_step(JointDynamics& system, JointState& x, double t, double dt) noexcept;
 
-  /// Repeats the second half of the last kick after a change of ring, inputs or step.
+  /// Repeats the second half of the last kick after a change of the ring, the inputs or the length of a step.
   void retake(JointDynamics& system, JointState& x, double dt) noexcept;
 
-  /// Speeds at the instant of the angles, means over the kick [rad/s].
+  /// Speeds of motor and output at the instant of the angles: means over the kick [rad/s].
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }
 
   /// Friction torque of the last kick on motor and output [N.m].
@@ -45,13 +46,13 @@ public:
   /// Motor work - load work - dissipated - kinetic energy at the instant of the angles [J].
   double balance() const noexcept { return balance_; }
 
-  /// Work on the load and kinetic energy of the output, at the instant of the angles [J].
+  /// Work on the load plus kinetic energy of the output, at the instant of the angles [J].
   double deliveredEnergy() const noexcept { return delivered_; }
 
-  /// Torque of the gear and all friction on load and arm, at the instant of the angles [N.m].
+  /// Torque that gear and friction exert on load and arm, at the instant of the angles [N.m].
   double linkTorque() const noexcept { return link_torque_; }
 
-  /// Resets to rest under the load of an arm [N.m], before the first step; the delivered energy becomes zero.
+  /// Resets to the state before the first step: at rest under the torque of an arm [N.m].
   void reset(double arm_torque) noexcept
   {
     *this = {};
@@ -72,29 +73,30 @@ private:
   double balance_{};
   double delivered_{};
   double link_torque_{};
-  Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // works of the last kick after the instant [J]
-  Eigen::Vector2d inertia_{ 0.0, 0.0 };    // inertia in the last kick [kg.m^2]
-  Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // change of the speeds after the instant [rad/s]
-  /// The energy account takes the kinetic energy at an instant from the product of the speeds half a step before and
-  /// after it. A repeated half kick changes this product, although no speed at the instant changes: sum by motor and
-  /// output [J].
+  Eigen::Vector3d rest_{ 0.0, 0.0, 0.0 };  // works in the second half of the last kick [J]
+  Eigen::Vector2d inertia_{ 0.0, 0.0 };    // inertia of motor and output in the last kick [kg.m^2]
+  Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // change of the speeds in the second half of the last kick [rad/s]
+  /// The energy account computes the kinetic energy at an instant from the product of the speeds half a step before and
+  /// half a step after the instant. A repeated half kick changes this product, although the speeds at the instant stay.
+  /// This is the sum of the changes, for motor and output [J].
   Eigen::Vector2d retaken_{ 0.0, 0.0 };
   JointInputs acted_;  // inputs of the last kick
-  bool moves_{};       // speeds are half a step ahead because a kick was done
+  bool moves_{};       // whether the speeds are half a step ahead, because there was a kick
 };
 
 /// Integrates the joint by the leapfrog in equal steps and keeps its energy account.
 class JointStepper
 {
 public:
-  /// Largest phase of an oscillation in a step [rad]. The leapfrog then runs ahead by phase^2 / 24 = 0.04 %, so that
-  /// the error after four oscillations is a hundredth of the amplitude.
+  /// Largest phase of an oscillation in a substep [rad]. The phase of the leapfrog is then ahead of the exact one by
+  /// phase^2 / 24 = 0.04 %, so that the error after four oscillations is a hundredth of the amplitude.
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
-  /// Within an arm [rad]. Its light links have kilohertz modes that nothing in the arm excites; 0.7 % ahead.
+  /// MAX_PHASE_ADVANCE of a joint in an arm [rad]. The leapfrog is then ahead by 0.7 %, but only in the modes of light
+  /// links at some kHz, which nothing in the arm excites.
   static constexpr double MAX_PHASE_ADVANCE_IN_ARM = 0.4;
   static constexpr int MAX_SUBSTEPS = 31;
-  /// Speed of an output at rest, 0.4 seconds of arc a second [rad/s]. An output that only the regularised friction of
-  /// its flanks holds creeps with up to 8e-7 rad/s at the shipped stiction_velocity.
+  /// Largest speed of an output that counts as at rest [rad/s]. If only the regularised friction of the flanks holds
+  /// the output, it creeps with up to 8e-7 rad/s at the shipped stiction_velocity.
   static constexpr double REST_SPEED = 2e-6;
   static constexpr double REST_TIME = 0.1;  ///< [s]
 
@@ -108,27 +110,28 @@ public:
     dynamics_.setModel(copied);
   }
 
-  /// Puts the joint at rest where it settles under an arm's load [N.m]. @returns false if it does not settle.
+  /// Sets the joint to rest in its equilibrium under an arm's torque [N.m]. @returns false if there is no equilibrium.
   bool reset(double arm_torque = 0.0) noexcept;
 
-  /// Advances one step under `inputs`, which act from its beginning. The drive's speed limit and current loop reduce
-  /// the wanted torque. @returns false if the ring did not converge; the last angles then stay, at rest.
+  /// Advances one step under `inputs`, which act from the beginning of the step. The motor's speed limit and current
+  /// loop limit and delay the wanted torque. @returns false if the ring did not converge; the joint then rests at its
+  /// last angles.
   ///
-  /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal ones. Parameters
-  /// and an arm's inertia determine their number, so that live and offline runs are equal. The number is odd: the arm's
-  /// load then acts from half a step before its instant on, as in an undivided step.
+  /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal substeps.
+  /// Parameters and an arm's inertia determine their number, so that live and offline runs are equal. The number is
+  /// odd. A new torque of the arm then acts from the middle of the step on, as in an undivided step.
   ///
-  /// A joint at rest is not solved until an input changes. It is at rest if its motor sticks and, for REST_TIME, its
-  /// output has moved slower than REST_SPEED.
+  /// A joint at rest is not solved until an input changes. It is at rest if for REST_TIME its motor sticks and its
+  /// output moves slower than REST_SPEED.
   bool step(const JointInputs& inputs) noexcept;
 
-  /// Solves the full ring after a change of the model between two steps. The fault releases or absorbs the change of
-  /// the stored energy. @returns false if the ring did not converge; the old ring then stays.
+  /// Solves the full ring after a fault changed the model between two steps. The energy account counts the change of
+  /// the stored energy as released. @returns false if the ring did not converge; the old ring then stays.
   bool updateModel() noexcept;
   /// energy released by changes of the model since the reset [J]
   double releasedEnergy() const noexcept { return released_; }
 
-  /// Sets the output's inertia within an arm, from the next step on [kg.m^2].
+  /// Sets the inertia of an output in an arm, from the next step on [kg.m^2].
   void setOutputInertia(double inertia) noexcept;
 
   /// See JointDynamics::useSurface.
@@ -137,10 +140,10 @@ public:
   double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< speeds of motor and output [rad/s]
-  const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< on motor and output [N.m]
+  const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< see Leapfrog::frictionTorque
   /// torque of the current at 25 degC [N.m]
   double driveTorque() const noexcept { return x_[joint_state::DRIVE_TORQUE]; }
-  /// Whether the drive reduces its torque at the speed limit.
+  /// Whether the speed limit reduces the motor's torque.
   bool isSpeedLimited() const noexcept
   {
     return dynamics_.model().motor.fades(dynamics_.inputs.motor_torque, speeds_[0]);
@@ -150,10 +153,9 @@ public:
   double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load and friction [J]
   int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
-  /// Phase of the joint's fastest oscillation, motor against output, in a substep at the ring's present stiffness
-  /// [rad].
+  /// Phase of the fastest oscillation of motor against output in a substep, at the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
-  bool isCoarse() const noexcept;  ///< whether the phase advance exceeds MAX_PHASE_ADVANCE
+  bool isCoarse() const noexcept;  ///< whether phaseAdvance() exceeds MAX_PHASE_ADVANCE or its value in an arm
   /// Work on load and arm plus kinetic energy of the output since the reset [J].
   double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
   double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog::linkTorque
@@ -169,19 +171,19 @@ private:
   int substepsFor(double phase) const noexcept;
   void divideAgain(double output_inertia) noexcept;
 
-  int rest_steps_{};  // successive steps after which the joint was at rest
+  int rest_steps_{};  // number of successive steps at rest
   int substeps_{ 1 };
   double step_;     // [s]
   double substep_;  // [s]
   double phase_limit_{ MAX_PHASE_ADVANCE };
-  double stiffest_{};      // slope of the cup with its friction [N.m/rad]
+  double stiffest_{};      // stiffest slope of the cup, with its friction [N.m/rad]
   double motor_square_{};  // motor's part of the squared frequency of the fastest oscillation [rad^2/s^2]
   JointDynamics dynamics_;
   Leapfrog leapfrog_;
   JointState x_{ JointState::Zero() };
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
-  double balance_{};          // motor work - load work - dissipated - kinetic energy [J]
+  double balance_{};          // motor work - load work - dissipated energy - kinetic energy [J]
   double stored_at_start_{};  // [J]
   double released_{};         // [J]
   double throughput_{};

@@ -8,7 +8,7 @@ namespace hjt
 {
 namespace
 {
-/// Number of copies of the tangent's teeth in the ring.
+/// How many times the teeth of the tangent occur in the ring: 2 if the tangent is that of half a ring.
 int copiesOf(const RingTangent& tangent) noexcept
 {
   return tangent.solved < tangent.teeth() ? 2 : 1;
@@ -144,11 +144,11 @@ EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
 {
 }
 
-/// Stores the step in `step_` and its start in `start_points_`.
+/// Computes a step on which the energy decreases. Stores it in `step_`, and its start in `start_points_`.
 bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& state) noexcept
 {
   constexpr int MAX_SHIFTS = 30;
-  constexpr double FIRST_SHIFT = 1e-6;  // share of the stiffest diagonal entry
+  constexpr double FIRST_SHIFT = 1e-6;  // as a share of the stiffest diagonal entry [-]
   double shift = 0.0;
   for (int i = 0; i < MAX_SHIFTS; ++i)
   {
@@ -171,7 +171,7 @@ bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& stat
   return false;
 }
 
-/// Moves to `length` steps from the start. @returns the slope of the energy along the step [J].
+/// Moves to the start plus `length` times the step. @returns minus the slope of the energy along the step [J].
 double EnergyDescent::slopeAt(double length, RingLinearisation& system, RingState& state) noexcept
 {
   state.shape.points = start_points_ + length * step_;
@@ -183,7 +183,7 @@ double EnergyDescent::slopeAt(double length, RingLinearisation& system, RingStat
 bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_TRIALS = 40;
-  constexpr double LEVEL = 0.3;  // share of the first slope
+  constexpr double LEVEL = 0.3;  // slope that counts as level, over the slope at the start [-]
   if (!findWayDown(system, state))
   {
     return false;
@@ -206,10 +206,11 @@ bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
   return false;
 }
 
-/// The step is taken if it lowers the energy or, at the level of rounding, the forces.
+/// Solves with `damping` [N/m] added to the stiffness of every tooth. The step is kept if it lowers the energy or, for
+/// a change of the energy within its rounding, the largest force. @returns whether the step is kept.
 bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingState& state) noexcept
 {
-  constexpr double ROUNDING = 1e-12;  // share of the energy
+  constexpr double ROUNDING = 1e-12;  // rounding of the energy, as a share of the energy [-]
   const double energy = system.forces().energy;
   const double residual = system.residual();
   system.updateTangent(state);
@@ -233,7 +234,7 @@ bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingSt
   return false;
 }
 
-/// Assigns teeth that have left their space to the nearest one. @returns whether a space changed.
+/// Assigns the nearest space to teeth that have left their space. @returns whether the space of any tooth changed.
 bool EnergyDescent::pairsAgain(RingState& state) noexcept
 {
   old_space_ = state.shape.space;
@@ -246,8 +247,8 @@ bool EnergyDescent::pairsAgain(RingState& state) noexcept
 
 SolveStatus EnergyDescent::descend(RingLinearisation& system, RingState& state) noexcept
 {
-  constexpr int MAX_STEPS = 200;         // a snap of teeth takes up to 34; a step of a running twin must end
-  constexpr double FIRST_DAMPING = 1e6;  // [N/m], added to every tooth's stiffness
+  constexpr int MAX_STEPS = 200;         // a snap of teeth needs up to 34 steps; a running twin needs a limit
+  constexpr double FIRST_DAMPING = 1e6;  // [N/m]
   constexpr double MIN_DAMPING = 1e-3;
   constexpr double MAX_DAMPING = 1e16;
   SolveStatus status;
@@ -288,7 +289,7 @@ SolveStatus NewtonSolver::solve(const EquilibriumGoal& goal, RingLinearisation& 
   if (status.residual <= goal.guess && !system.slopesChanged(state, goal.present_rates))
   {
     state.residual = status.residual;
-    return status;  // the tangent of the last solve predicted this well enough
+    return status;  // the guess is accurate enough without a Newton step
   }
   status.code = iterate(goal, system, state, descent, status);
   if (status.ok() && system.slopesChanged(goal.present_rates) && !system.refactor(state))
@@ -306,8 +307,8 @@ SolveStatus NewtonSolver::solve(const EquilibriumGoal& goal, RingLinearisation& 
 SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
                                 EnergyDescent* descent, SolveStatus& status) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.1;  // with a smaller ratio, the factors serve another iteration
-  constexpr int DESCENT = 5;  // factor on the iterations: one for every few teeth that begin or end contact
+  constexpr double GOOD_CONTRACTION = 0.1;  // largest ratio of successive forces for a second use of the factors [-]
+  constexpr int DESCENT = 5;  // factor on the iterations: every few teeth that begin or end contact need one
   const int max_iterations = (descent != nullptr ? DESCENT : 1) * max_iterations_;
   bool fresh = false;
   while (std::isfinite(status.residual))
@@ -339,7 +340,7 @@ SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& 
   return SolveCode::NOT_FINITE;
 }
 
-/// One Newton step, shortened until the largest force decreases or is at the level of rounding.
+/// Takes one Newton step, shortened until the largest force decreases or is at most `enough` [N].
 bool NewtonSolver::searchLine(double residual, double enough, RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_HALVINGS = 7;

@@ -19,29 +19,30 @@ public:
 
   void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// Computes the forces at `state`; without those of the circular spline while `circular_spline_in` is false.
+  /// Computes the forces at `state`, without those of the circular spline if `circular_spline_in` is false.
   void updateForces(const RingState& state) noexcept;
-  void updateTangent(const RingState& state) noexcept;  ///< requires the forces of this state
+  void updateTangent(const RingState& state) noexcept;  ///< requires updateForces of this state
   void shift(double stiffness) noexcept;                ///< adds a stiffness to the diagonal of every tooth [N/m]
   bool factor() noexcept { return solver().factor(tangent_); }
 
-  /// Computes tangent and factors for the state of the present forces. @returns false if the tangent has no inverse.
+  /// Computes the tangent and its factors for `state`. Requires updateForces of this state. @returns false if the
+  /// tangent has no inverse.
   bool refactor(const RingState& state) noexcept;
 
-  /// Whether the tangent's slopes changed: the cup is on another slope than for the rates of `state`, or since
-  /// `refactor` the contact of a tooth on a ball, or of any tooth if `all_teeth`, has begun or ended.
+  /// Whether the slopes in the tangent changed: either the cup is on another slope than for the rates of `state`, or a
+  /// contact began or ended since `refactor`. `all_teeth`: counts all contacts of teeth, not only those with balls.
   bool slopesChanged(const RingState& state, bool all_teeth) const noexcept;
   /// Whether the slopes changed since `refactor`.
   bool slopesChanged(bool all_teeth) const noexcept;
 
-  /// Solves for the step of the tooth points by the factored tangent [m].
+  /// Computes the step of the tooth points from the forces and the factored tangent [m].
   void solve(Eigen::VectorXd& step) noexcept;
 
-  /// Step after `refactor`. The first one also computes the rates by both angles, because a solve with three columns
-  /// costs little more.
+  /// Newton step of the tooth points [m]. The first call after `refactor` also computes the rates by both angles,
+  /// because a solve with three columns costs little more than one with one column.
   const Eigen::VectorXd& newtonStep() noexcept;
 
-  /// Moves rates and stiffness of the last `refactor` to the state.
+  /// Moves the rates and the stiffness that belong to the last `refactor` to the state.
   void moveSensitivities(RingState& state) noexcept;
 
   const RingForces& forces() const noexcept { return forces_; }
@@ -57,21 +58,21 @@ private:
 
   const RingModel* model_;
   CyclicSolver solver_;
-  CyclicSolver half_solver_;  // for a ring that repeats after half a turn
+  CyclicSolver half_solver_;  // solver for a ring that repeats after half a turn
   RingTangent tangent_;
   RingForces forces_;
-  // State of the contacts in the factored tangent.
+  // Contacts in the factored tangent.
   std::vector<char> factored_meshed_;
   Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact
-  // Results of the last factored tangent, if computed.
+  // Whether the rates of the last factored tangent are computed, and the results of this tangent.
   bool rates_known_{};
   Eigen::VectorXd step_;
   Eigen::VectorXd by_wave_generator_;
   Eigen::VectorXd by_output_;
 };
 
-/// Minimisation of the ring's stored energy for cases where Newton's method on the forces fails. It is slower, but
-/// robust if dozens of teeth begin and end contact.
+/// Minimisation of the ring's stored energy for cases where Newton's method on the forces fails. The minimisation is
+/// slower than Newton's method, but robust if dozens of teeth begin and end contact.
 class EnergyDescent
 {
 public:
@@ -80,13 +81,14 @@ public:
 
   void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// One Newton step on a factored tangent, which is shifted until it is positive along the step. The step is complete
-  /// if it still goes downhill or nearly level at its end, else it goes to the lowest energy. Only slopes are compared,
-  /// because energies near a minimum differ by less than their rounding. @returns false if no step goes downhill.
+  /// Takes one Newton step on a factored tangent. First the diagonal of the tangent is increased until the energy
+  /// decreases along the step. The step has its whole length if the energy still decreases or is nearly level at its
+  /// end, else it ends near the lowest energy. The search compares slopes only, because energies near a minimum differ
+  /// by less than their rounding. @returns false if the energy decreases along no step.
   bool step(RingLinearisation& system, RingState& state) noexcept;
 
-  /// Moves to the next minimum at the state's position by damped steps that lower the energy. Teeth that leave their
-  /// space are assigned their nearest one. `iterations` counts the steps. On failure the state is undefined.
+  /// Moves the tooth points to the next minimum of the energy by damped steps. Teeth that leave their space get the
+  /// nearest space. SolveStatus::iterations counts the steps. On failure the state is undefined.
   SolveStatus descend(RingLinearisation& system, RingState& state) noexcept;
 
 private:
@@ -97,7 +99,6 @@ private:
 
   const RingModel* model_;
   double tolerance_;  // [N]
-  // Working memory.
   Eigen::VectorXd start_points_;
   Eigen::VectorXd start_forces_;
   Eigen::VectorXd step_;
@@ -106,20 +107,20 @@ private:
 
 struct EquilibriumGoal
 {
-  double residual;     ///< largest out-of-balance force component on a tooth [N]
-  double guess;        ///< largest force of a first guess that is accepted without a step [N]
-  bool present_rates;  ///< rates and stiffness must belong to the teeth in contact now
+  double residual;     ///< largest allowed out-of-balance force component on a tooth [N]
+  double guess;        ///< largest force component at which a first guess is accepted without a Newton step [N]
+  bool present_rates;  ///< whether rates and stiffness must belong to the teeth that are now in contact
 };
 
-/// Newton's method on the forces of the ring with the analytic tangent and a line search. It keeps the factors while
-/// the forces contract well.
+/// Newton's method on the forces of the ring with the analytic tangent and a line search. The method uses the factors
+/// of a tangent again if the forces decrease fast.
 class NewtonSolver
 {
 public:
   NewtonSolver(const RingModel& model, int max_iterations);
 
-  /// Solves for the equilibrium at the state's position; the state must have up-to-date forces. `descent`: minimises
-  /// the energy instead; null: Newton's method. On failure the state is undefined.
+  /// Solves for the equilibrium at the state's position. Requires updateForces of this state. `descent`: minimisation
+  /// of the energy in place of Newton's method, or null. On failure the state is undefined.
   SolveStatus solve(const EquilibriumGoal& goal, RingLinearisation& system, RingState& state,
                     EnergyDescent* descent) noexcept;
 

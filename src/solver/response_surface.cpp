@@ -36,7 +36,7 @@ LineIndex::LineIndex(const std::vector<double>& lines)
 
 HJT_VECTOR_CLONES SurfaceEnergy SurfaceCell::energy() const noexcept
 {
-  // Two cubics along v, of the energy and of its slope by u, at the position within the cell.
+  // Two cubics along v, one for the energy and one for its slope by u, evaluated at the position within the cell.
   using Pair = Eigen::Array2d;
   const double h = 1.0 / per_height_;
   const double v = v_;
@@ -118,7 +118,7 @@ ResponseSurface::ResponseSurface(std::vector<Share> shares)
 
 bool ResponseSurface::locate(double motor_angle, double output_angle, Place& place) const noexcept
 {
-  constexpr double MAX_PITCHES = 1e15;  // beyond this an angle has no position within a pitch
+  constexpr double MAX_PITCHES = 1e15;  // larger angles have no digits left for the position within a pitch
   const double pitches = motor_angle * pitches_per_radian_;
   const double v = output_angle - motor_angle * inverse_ratio_;
   if (!(v >= lowest_ && v <= highest_ && std::abs(pitches) < MAX_PITCHES))
@@ -165,7 +165,7 @@ void ResponseSurface::Tables::locate(double pitches, double v, Cells& cells) con
   }
 }
 
-/// `part`: fraction of a pitch.
+/// `part`: position within the pitch, 0 ... 1 [-].
 void ResponseSurface::Tables::locateDeviation(std::int64_t pitch, double part, double v, Cells& cells) const noexcept
 {
   const auto count = static_cast<std::int64_t>(deviations.pitches.size());
@@ -246,14 +246,15 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   response.output_torque = -energy.by_v;
   response.wave_generator_torque = energy.by_v * inverse_ratio_ - energy.by_u * per_pitch;
   response.motor_stiffness = k_uu - inverse_ratio_ * (2.0 * k_uv - inverse_ratio_ * energy.by_vv);
-  // The housing carries the sum of wave generator and output torque: (1 - 1/ratio) dU/dv + dU/du.
+  // The torque on the housing is minus the sum of the torques on wave generator and output:
+  // (1 - 1/ratio) dU/dv + dU/du, with u here in rad.
   const double by_output = (1.0 - inverse_ratio_) * energy.by_vv + k_uv;
   housing_stiffness[0] = (1.0 - inverse_ratio_) * k_uv + k_uu - inverse_ratio_ * by_output;
   housing_stiffness[1] = by_output;
   return response;
 }
 
-/// Adds the weighted values of the other shares to those of the first.
+/// Weights the values of the first share and adds the weighted values of the other shares.
 void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept
 {
   energy *= place.weight;
@@ -274,8 +275,8 @@ void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingR
   }
 }
 
-/// The curvature of the energy changes stiffness and velocity ratio. The stiffness between motor and output is minus
-/// ratio times that of the output.
+/// Changes output stiffness and velocity ratio by the curvature of the energy `change`. The velocity ratio is minus the
+/// stiffness between motor and output over the stiffness at the output.
 void ResponseSurface::stiffen(const SurfaceEnergy& change, RingResponse& response) const noexcept
 {
   const double stiffness = response.output_stiffness + change.by_vv;
@@ -291,7 +292,7 @@ HJT_VECTOR_CLONES void ResponseSurface::friction(const Place& place, RingFrictio
 {
   using Value = SurfaceNode::Value;
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
-  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // a few more than needed, to fill whole vectors
+  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // more values than needed, to fill whole vectors
   constexpr int VISCOUS = Value::VISCOUS - Value::BILINEAR;
   constexpr int FLANKS = Value::FLANKS - Value::BILINEAR;
   Eigen::Array<float, COUNT, 1> x = place.cell.values<COUNT>();

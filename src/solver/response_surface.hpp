@@ -16,8 +16,8 @@
 
 namespace hjt
 {
-/// Values of the ring in equilibrium at a node of its table. The energy and its derivatives have double precision. All
-/// other values are interpolated bilinearly and have single precision, which halves the memory traffic of a step.
+/// Values of the ring in equilibrium at a node of its table. The energy U and its derivatives have double precision.
+/// All other values are interpolated bilinearly and have single precision, which halves the memory traffic of a step.
 class SurfaceNode
 {
 public:
@@ -30,13 +30,13 @@ public:
     ENERGY_BY_UV,              // [J/rad]
     BILINEAR,                  // index of the first bilinear value
     CONTACT_FORCE = BILINEAR,  // [N]
-    RING_TORQUE,               // torque of outer race and flexing rim at the motor [N.m]
-    VISCOUS,                   // motor-motor, motor-output, output-output [N.m.s/rad]
-    FLANKS = VISCOUS + 3,      // slip (2) and rms slip (2) for each group [N.m], [m/rad]
+    RING_TORQUE,               // friction torque of outer race and flexing rim at the motor [N.m]
+    VISCOUS,                   // viscous matrix: motor-motor, motor-output, output-output [N.m.s/rad]
+    FLANKS = VISCOUS + 3,      // torque (2 values [N.m]) and rms slip (2 values [m/rad]) of each group of flanks
     VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
     OUTPUT_STIFFNESS,                                                  // [N.m/rad]
     TEETH_LOADED,                                                      // [-]
-    LOBE_FORCE,                                                        // mesh force of both lobes [N]
+    LOBE_FORCE,                                                        // mesh force of each lobe [N]
     VALUES = LOBE_FORCE + 2
   };
   using Energies = std::array<double, BILINEAR>;
@@ -83,54 +83,54 @@ private:
 
 using SurfaceNodes = SharedValues<SurfaceNode>;
 
-/// Values of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
-/// generator angle / ratio. The table is built, stored in the cache and read as plain data.
+/// Table of the ring in equilibrium over  u = wave generator angle within a tooth pitch  and  v = output angle - wave
+/// generator angle / ratio. The table is plain data, which the cache stores and reads.
 struct SurfaceTable
 {
   double pitch{};             ///< tooth pitch of the flexspline [rad]
-  double ratio{};             ///< nominal ratio: v does not change when the drive turns by a tooth pitch [-]
-  int columns{};              ///< equal intervals of u in a pitch
+  double ratio{};             ///< nominal ratio [-]
+  int columns{};              ///< number of equal intervals of u in a pitch
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
-  SurfaceNodes nodes;         ///< (columns + 1) for each line; the last equals the first
-  ToothResponse teeth;        ///< over the same range, with lines of its own
+  SurfaceNodes nodes;         ///< columns + 1 nodes for each line; the last equals the first
+  ToothResponse teeth;        ///< table of the forces of the teeth over the same range, with lines of its own
   GridChecks checks{};
 };
 
-/// Difference of a gear with unequal teeth from the ideal gear at the same angles, over one period of the pattern, with
-/// one table for each tooth pitch. At the edge between two pitches both tables are the same function of v, so that
-/// energy and torques are continuous.
+/// Values of a gear with unequal teeth minus those of the gear with equal teeth at the same angles. There is one table
+/// for each tooth pitch of a period of the gear. At the edge between two pitches the two tables are the same function
+/// of v, so that energy and torques are continuous.
 struct DeviationTable
 {
   struct Pitch
   {
-    int columns{};              ///< equal intervals of u
+    int columns{};              ///< number of equal intervals of u
     std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: no deviation
-    SurfaceNodes nodes;         ///< (columns + 1) for each line
+    SurfaceNodes nodes;         ///< columns + 1 nodes for each line
   };
-  std::vector<Pitch> pitches;  ///< empty: no deviations
-  bool swaps_lobes{};          ///< at the end of the period the lobes have exchanged their places
-  int shift{};                 ///< shift of the gear's pattern against the table's [teeth]; >= 0
+  std::vector<Pitch> pitches;  ///< tables of the pitches; empty: no deviations
+  bool swaps_lobes{};          ///< whether the lobes have exchanged their places at the end of a period
+  int shift{};                 ///< number of teeth by which the gear is shifted against the table, >= 0
   GridChecks checks{};
 };
 
-/// Finds the largest of ascending values that is not above a given one, in constant time.
+/// Finds the line of a table below a position v, in constant time.
 class LineIndex
 {
 public:
-  /// `lines`: none, or at least two.
+  /// `lines`: no line, or at least two lines.
   explicit LineIndex(const std::vector<double>& lines);
 
-  /// Index of the line below `v`, which must be between the first and the last line. Never the last line.
+  /// Index of the line at or below `v`, but never that of the last line. `v` must be within the first and last line.
   std::size_t below(const std::vector<double>& lines, double v) const noexcept
   {
-    // Bins are narrower than the intervals between lines, so that a bin contains at most one line.
+    // A bin is narrower than any interval between lines, so that it contains at most one line.
     const std::size_t line = line_[static_cast<std::size_t>((v - lines.front()) * bins_per_unit_)];
     return line + (line + 2 < lines.size() && v >= lines[line + 1] ? 1 : 0);
   }
 
 private:
   double bins_per_unit_{};
-  std::vector<std::uint32_t> line_;  // line below the lower edge of each bin
+  std::vector<std::uint32_t> line_;  // index of the line below the lower edge of each bin
 };
 
 /// Cell of a table between two columns and two lines.
@@ -139,9 +139,9 @@ class SurfaceCell
 public:
   SurfaceCell() = default;
 
-  /// `below`: node at the lower u on the line below; the node at the higher u follows in memory. `above`: node at the
-  /// lower u on the line above. `u`, `v`: position within the cell, 0 ... 1. `per_width`, `per_height`: inverse of the
-  /// cell's width in u [pitches] and height in v [rad].
+  /// `below`: node at the lower u on the lower line, which the node at the higher u follows in memory. `above`: node at
+  /// the lower u on the upper line. `u`, `v`: position within the cell, 0 ... 1. `per_width`: inverse of the cell's
+  /// width in u [1/pitch]. `per_height`: inverse of the cell's height in v [1/rad].
   SurfaceCell(const SurfaceNode* below, const SurfaceNode* above, double u, double v, double per_width,
               double per_height) noexcept
     : below_(below), above_(above), u_(u), v_(v), per_width_(per_width), per_height_(per_height)
@@ -150,10 +150,10 @@ public:
 
   bool empty() const noexcept { return below_ == nullptr; }
 
-  /// Energy by bicubic Hermite interpolation.
+  /// Energy and its derivatives by bicubic Hermite interpolation.
   SurfaceEnergy energy() const noexcept;
 
-  /// A value other than the energy, by bilinear interpolation.
+  /// Value with the index `which` >= BILINEAR, by bilinear interpolation.
   double value(int which) const noexcept
   {
     const double low = (1.0 - u_) * below_[0][which] + u_ * below_[1][which];
@@ -185,18 +185,18 @@ private:
   double per_height_{};
 };
 
-/// The ring in equilibrium as a table over the two angles of the joint. With equal teeth the table repeats after one
-/// tooth pitch. Deviations describe a gear that repeats after more pitches, BallDrops a faulty bearing, and shares a
-/// gear between those of other surfaces.
+/// The ring in equilibrium as a table over the two angles of the joint. The table of a gear with equal teeth repeats
+/// after one tooth pitch. A DeviationTable describes a gear with unequal teeth, which repeats after more pitches.
+/// BallDrops describes a faulty bearing. Shares describe a gear whose parameters lie between those of other surfaces.
 ///
-/// The stored energy is a function: a piecewise bicubic Hermite interpolation of its values, slopes and mixed
-/// derivative at the nodes. Both torques are its derivatives, so that energy is conserved. The data of friction are
-/// bilinear.
+/// The stored energy is interpolated by a piecewise bicubic Hermite function from its values, slopes and mixed
+/// derivative at the nodes. The torques on motor and output are derivatives of this function, so that energy is
+/// conserved. The data of friction are interpolated bilinearly.
 class ResponseSurface
 {
 public:
-  /// `table`: at least two lines. The lines of a pitch of `deviations` span those of the table. `balls`: of this gear,
-  /// if its bearing is faulty.
+  /// `table`: at least two lines. `deviations`: the lines of each pitch span those of the table. `balls`: changes by
+  /// the balls if the bearing is faulty.
   explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {}, std::optional<BallDrops> balls = {});
 
   static constexpr std::size_t MAX_SHARES = 4;
@@ -208,16 +208,16 @@ public:
     double weight{};                                 ///< [-]
   };
 
-  /// One to MAX_SHARES surfaces of gears with equal numbers of teeth; the weights sum up to 1. The
-  /// range is the common part of their ranges.
+  /// `shares`: one to MAX_SHARES surfaces of gears with equal numbers of teeth, with weights whose sum is 1. The range
+  /// of the surface is the common part of their ranges.
   explicit ResponseSurface(std::vector<Share> shares);
 
-  /// Position on the table and its deviations.
+  /// Position on the table and on its deviations.
   struct Cells
   {
     SurfaceCell cell;
     SurfaceCell deviation;  ///< empty: no deviation at this position
-    bool lobes_swapped{};   ///< relative to the deviations' measurement
+    bool lobes_swapped{};   ///< whether the lobes have exchanged their places since the deviations were solved
     double weight{ 1.0 };   ///< weight of these values in the sum of the shares
 
     double value(int which) const noexcept
@@ -235,10 +235,11 @@ public:
     std::size_t other_count{};
   };
 
-  /// Finds a position. @returns false and does nothing outside the table or for angles that are NaN.
+  /// Finds the position of two angles on the surface. @returns false and does nothing if the position is outside the
+  /// table or an angle is NaN.
   bool locate(double motor_angle, double output_angle, Place& place) const noexcept;
 
-  /// Whether a position is within a share of the range from its ends.
+  /// Whether the distance of a position from an end of the range of v is less than `share` times the range.
   bool nearEdge(const Place& place, double share) const noexcept
   {
     return place.at < lowest() + share * (highest() - lowest()) ||
@@ -255,7 +256,7 @@ public:
 
   void friction(const Place& place, RingFrictionResponse& friction) const noexcept;
 
-  /// A value other than the energy, by bilinear interpolation.
+  /// Value with the index `which` >= SurfaceNode::BILINEAR, by bilinear interpolation.
   static double value(const Place& place, int which) noexcept
   {
     double sum = place.weight * place.Cells::value(which);
@@ -282,7 +283,8 @@ public:
   /// Table of the surface or, with several shares, of the first share.
   const SurfaceTable& table() const noexcept { return tables_->table; }
   const DeviationTable& deviations() const noexcept { return tables_->deviations; }
-  /// Whether the table contains forces of the teeth that no fault or error of single teeth or balls changes.
+  /// Whether the surface has a table of the forces of the teeth that is valid, because neither single teeth nor balls
+  /// differ from those of the sound nominal gear.
   bool hasTeeth() const noexcept
   {
     return shares_.empty() && !balls_ && tables_->deviations.pitches.empty() && !tables_->table.teeth.lines.empty();
@@ -293,7 +295,7 @@ public:
   double highest() const noexcept { return highest_; }                   ///< largest v [rad]
 
 private:
-  /// Tables and their indices; never changed.
+  /// Tables with their indices, which several surfaces share and which do not change.
   struct Tables
   {
     Tables(SurfaceTable of_gear, DeviationTable of_teeth);
@@ -303,8 +305,8 @@ private:
     SurfaceTable table;
     DeviationTable deviations;
     LineIndex line_index;
-    std::vector<double> per_height;          // inverse intervals between lines [1/rad]
-    std::vector<LineIndex> deviation_index;  // one for each pitch
+    std::vector<double> per_height;          // inverse of each interval between lines [1/rad]
+    std::vector<LineIndex> deviation_index;  // one index for each pitch
   };
 
   void addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept;

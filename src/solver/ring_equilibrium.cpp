@@ -39,8 +39,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 {
 }
 
-/// The rounding is a thousandth of the shipped tolerance. It matters for rims much stiffer, or teeth much finer, than
-/// the shipped gear's.
+/// In the shipped gear the rounding error is a thousandth of the shipped tolerance. It limits the tolerance only in a
+/// gear with a much stiffer rim or much finer teeth.
 double RingEquilibrium::measureRounding() noexcept
 {
   system_.updateForces(now_);
@@ -68,7 +68,8 @@ SolveStatus RingEquilibrium::insert(const DrivePosition& target) noexcept
   return status;
 }
 
-/// A round ring that jams in an eccentric circular spline is inserted nearly completely without it.
+/// Insertion for a round ring that jams in an eccentric circular spline. Without the circular spline the wave generator
+/// grows to 99 % of its amplitude. Then the circular spline is added.
 SolveStatus RingEquilibrium::insertWedged(const DrivePosition& target) noexcept
 {
   constexpr double NEARLY = 0.99;
@@ -93,7 +94,7 @@ SolveStatus RingEquilibrium::solveFrom(const Eigen::VectorXd& points, const Driv
   return moveTo(position);
 }
 
-/// Sets the round ring about the wave generator's centre, as before the insertion.
+/// Sets the ring to the state before the insertion: round, about the wave generator's centre.
 void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
 {
   const Eigen::Vector2d centre = model_->of<WaveGeneratorContact>().centre(target);
@@ -104,7 +105,7 @@ void RingEquilibrium::beginRound(const DrivePosition& target) noexcept
   begin(round_, { target.wave_generator_angle, target.output_angle, 0.0 });
 }
 
-/// Sets the ring at these points, whether in equilibrium or not.
+/// Sets the tooth points to `points`, which need not be in equilibrium.
 void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& position) noexcept
 {
   now_.position = position;
@@ -120,7 +121,7 @@ void RingEquilibrium::begin(const Eigen::VectorXd& points, const DrivePosition& 
   now_.residual = system_.residual();
 }
 
-/// Stores the model's version and determines the number of teeth to solve.
+/// Stores the version of the model and determines the number of teeth to solve.
 void RingEquilibrium::followModel() noexcept
 {
   model_version_ = model_->version();
@@ -245,15 +246,16 @@ SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::follow(const DrivePosition& target) noexcept
 {
-  constexpr double FOLLOWED = 10.0;  // factor on the tolerance
+  constexpr double FOLLOWED = 10.0;  // factor on the tolerance [-]
   goal_ = { FOLLOWED * tolerance_, tolerance_, false };
   const SolveStatus status = moveTo(target);
   goal_ = { tolerance_, tolerance_, true };
   return reachAfter(status, target);
 }
 
-/// On balls, teeth that begin to touch have no stiffness yet, so that an equilibrium may be near where Newton's method
-/// fails. A new insertion beyond half a pitch of twist would move the ring to the next spaces.
+/// Seeks the equilibrium by other methods if `status` is that of a failed `moveTo`. Teeth that begin to touch balls
+/// have no stiffness at first, so that Newton's method can fail near an equilibrium. `descend` comes before `reinsert`,
+/// because an insertion at a twist beyond half a pitch would move the teeth to the next spaces.
 SolveStatus RingEquilibrium::reachAfter(SolveStatus status, const DrivePosition& target) noexcept
 {
   if (status.ok() || !std::isfinite(target.wave_generator_angle) || !std::isfinite(target.output_angle))
@@ -267,7 +269,8 @@ SolveStatus RingEquilibrium::reachAfter(SolveStatus status, const DrivePosition&
   return status.ok() ? status : reinsert(target).addEffort(status);
 }
 
-/// Goes directly to the target and, if that fails, over halved paths that grow again.
+/// Solves at the target or, if this fails, at points on the path to it. The distance to the next point is halved after
+/// each failure and doubled after each success.
 SolveStatus RingEquilibrium::approach(const DrivePosition& target) noexcept
 {
   SolveStatus total;
@@ -309,7 +312,7 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   return solvePredicted();
 }
 
-/// Solves from the prediction at the present state.
+/// Solves from the predicted points in `now_`.
 SolveStatus RingEquilibrium::solvePredicted() noexcept
 {
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;
@@ -317,8 +320,8 @@ SolveStatus RingEquilibrium::solvePredicted() noexcept
   goal_.guess = tolerance_;
   if (prediction_.fromKept())
   {
-    goal_.guess = goal_.residual;  // the next guess does not use the error of this one
-    now_.cup_stiffness = 0.0;      // marks the rates as not those of the present teeth
+    goal_.guess = goal_.residual;  // not tighter, because the error does not enter the next guess
+    now_.cup_stiffness = 0.0;      // the rates do not belong to the present teeth
     if (!goal_.present_rates)
     {
       prediction_.takeKeptRates(now_);
@@ -349,7 +352,7 @@ SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
     return {};
   }
   target.wave_generator_angle = angle;
-  // Predicts the output's angle at constant load. Without stiffness (backlash) it turns by the motor's turn / ratio.
+  // Predicts the output angle at constant load. Without stiffness (backlash) it changes by the motor's turn / ratio.
   const double stiffness = ring.stiffness()(1, 1);
   target.output_angle +=
       stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
@@ -368,17 +371,17 @@ SolveCode codeOfFailure(const RingEquilibrium& ring, double load_torque) noexcep
 
 double balanceTolerance(const RingEquilibrium& ring) noexcept
 {
-  constexpr double SHARE = 1e-11;  // share of a tooth space: a few rounding errors of an angle of some radians
+  constexpr double SHARE = 1e-11;  // a few rounding errors of an angle of some radians, over a tooth space [-]
   return std::max(SHARE * toothSpace(ring) * ring.stiffness()(1, 1),
                   ring.rounding() * ring.model().gear.flexspline_inner_radius);
 }
 
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
-  constexpr int MAX_IDLE = 20;          // successive iterations without progress
-  constexpr double CLOSER = 0.999;      // progress is an excess below this share of the least one so far
-  constexpr double FIRST_REACH = 0.01;  // in tooth spaces
-  constexpr double MAX_REACH = 0.25;    // in tooth spaces; farther, teeth would get other spaces
+  constexpr int MAX_IDLE = 20;          // number of successive iterations without progress
+  constexpr double CLOSER = 0.999;      // an excess below this share of the least excess before is progress [-]
+  constexpr double FIRST_REACH = 0.01;  // first length of a step [tooth spaces]
+  constexpr double MAX_REACH = 0.25;    // length of a step, above which teeth would get other spaces [tooth spaces]
   SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);
   double reach = FIRST_REACH * toothSpace(ring);
   double excess = ring.forces().output_torque - load_torque;

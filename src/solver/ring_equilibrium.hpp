@@ -15,52 +15,54 @@ namespace hjt
 {
 /// The ring in equilibrium at a position of wave generator and circular spline.
 ///
-/// Newton's method (NewtonSolver) starts from a prediction (RingPrediction). If it fails, the target is approached over
-/// halved paths. The spaces of the teeth change only between solves and out of contact. On failure the last state
-/// stays. An insertion that fails is repeated by minimisation of the energy (EnergyDescent).
+/// Newton's method (NewtonSolver) starts from a prediction (RingPrediction). If a move to new angles fails, it is
+/// divided into shorter moves. If these fail too, the last state stays. An insertion that fails is repeated by
+/// minimisation of the energy (EnergyDescent). A tooth changes its space only between two solves and only if it touches
+/// no flank.
 class RingEquilibrium
 {
 public:
   RingEquilibrium(const RingModel& model, const SolverParameters& parameters);
 
-  /// Solves without a guess: the radial deflection grows from zero with the circular spline present. If that fails, it
-  /// grows without the circular spline, which is then added.
+  /// Solves without a guess: the amplitude of the wave generator grows from zero. If this fails because the round ring
+  /// jams in the circular spline, the amplitude grows without the circular spline, which is then added.
   SolveStatus insert(const DrivePosition& target) noexcept;
 
-  /// Solves from a guess of the tooth points [2 N, m]; every tooth gets the space nearest to it at rest.
+  /// Solves from a guess of the tooth points [m]. Every tooth gets the space nearest to its angle at rest.
   SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
-  /// Repeats the insertion during a run after `moveTo` failed, with new spaces for the teeth. On failure the state does
-  /// not change.
+  /// Repeats the insertion after `moveTo` failed. The teeth get new spaces. On failure the state does not change.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
-  /// Solves at the present position after a change of the model and, if that fails, repeats the insertion. `moveTo`
-  /// calls this function if the caller did not.
+  /// Solves at the present position after a change of the model. If this fails, repeats the insertion. `moveTo` calls
+  /// this function if the caller did not call it after the change.
   SolveStatus updateModel() noexcept;
 
-  /// Computes rates and stiffness at the present shape; those of `moveTo` belong to one Newton step before. @returns
-  /// false and changes nothing if the tangent has no inverse.
+  /// Computes rates and stiffness at the present shape. After `moveTo` they are those of the shape before its last
+  /// Newton step. @returns false and changes nothing if the tangent has no inverse.
   bool refreshSensitivities() noexcept;
 
   /// Solves for the equilibrium at another position from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// Solves at another position from a guess of its tooth points. The model must not have changed since the last move.
+  /// Solves at another position from a guess of the tooth points [m]. The model must not have changed since the last
+  /// move.
   SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
 
-  /// Minimises the energy at the target after `moveTo` failed because the ring snaps. Teeth that leave their space get
-  /// the nearest one. The method is slow; `iterations` counts its steps. On failure the state does not change.
+  /// Minimises the energy at the target, for a ring that snaps so that `moveTo` failed. Teeth that leave their space
+  /// get the nearest space. This is slow. SolveStatus::iterations counts the steps. On failure the state does not
+  /// change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
-  /// Calls `moveTo`, then on failure `descend`, and then `reinsert`.
+  /// Calls `moveTo`, after its failure `descend`, and after the failure of `descend` `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  /// Solves as `moveTo`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and
+  /// Solves like `reach`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and
   /// stiffness may belong to a nearby state.
   SolveStatus follow(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return *model_; }
-  /// Refers a copy of this object to a copy of its model.
+  /// Makes a copy of this object use `copied`, a copy of its model.
   void setModel(const RingModel& copied) noexcept
   {
     model_ = &copied;
@@ -72,22 +74,23 @@ public:
   const DrivePosition& position() const noexcept { return now_.position; }
   const RingForces& forces() const noexcept { return system_.forces(); }
 
-  /// Rounding error of a coordinate as a force [N]: the least tolerance of a solve.
+  /// Force by the rounding error of a coordinate of a tooth, which is the least tolerance of a solve [N].
   double rounding() const noexcept { return rounding_; }
 
   /// Torques on wave generator and output, corrected to first order for the remaining out-of-balance forces of the
   /// teeth [N.m].
   Eigen::Vector2d torques() const noexcept;
 
-  /// Derivatives of the tooth points by wave generator angle and by output angle in equilibrium [m/rad]. They are those
-  /// of the last factored tangent: with the present contacts, at a shape at most a Newton step away.
+  /// Derivatives of the tooth points by wave generator angle and by output angle in equilibrium [m/rad]. They belong to
+  /// the last factored tangent, with the present contacts and a shape at most a Newton step from the present one.
   const Eigen::VectorXd& byWaveGenerator() const noexcept { return now_.by_wave_generator; }
   const Eigen::VectorXd& byOutput() const noexcept { return now_.by_output; }
 
-  /// Second derivatives of the stored energy by (wave generator, output) angle, with the ring in equilibrium [N.m/rad].
+  /// Second derivatives of the stored energy by wave generator angle and output angle, with the ring in equilibrium
+  /// [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
-  /// Output speed over wave generator speed at constant load, from the stiffness; 0 if the output is free [-].
+  /// Output speed over wave generator speed at constant load, from the stiffness [-]; 0 if the output is free.
   double velocityRatio() const noexcept
   {
     return now_.stiffness(1, 1) > 0.0 ? -now_.stiffness(1, 0) / now_.stiffness(1, 1) : 0.0;
@@ -106,10 +109,10 @@ private:
   double measureRounding() noexcept;
 
   const RingModel* model_;
-  std::uint64_t model_version_;  // version of the model for the present state
+  std::uint64_t model_version_;  // version of the model that the present state belongs to
   RingState now_;
-  RingState start_;    // start of the present move; its directions and lengths are not computed
-  RingState halfway_;  // the farthest point of the present move
+  RingState start_;    // start of the present move, without the directions and lengths of its shape
+  RingState halfway_;  // last solved state on the path of the present move
   RingState kept_;     // state before the insertion was repeated
   RingLinearisation system_;
   double rounding_;   // [N]
@@ -119,22 +122,22 @@ private:
   EquilibriumGoal goal_;
   NewtonSolver newton_;
   EnergyDescent descent_;
-  bool descending_{ false };  // minimises the energy instead of Newton's method
+  bool descending_{ false };  // whether the energy is minimised in place of Newton's method
   Eigen::VectorXd round_;     // working memory
 };
 
-/// Moves the ring to a wave generator angle [rad] and the output to the angle at which the mesh balances `load_torque`
-/// [N.m] (> 0 resists positive rotation), by Newton's method with the ring's condensed stiffness.
+/// Moves the wave generator to an angle [rad], and the output to the angle at which the mesh balances `load_torque`
+/// [N.m] (> 0 resists positive rotation). The method is Newton's with the stiffness of the ring in equilibrium.
 ///
-/// A trust region limits the step. It begins at a hundredth of a tooth space, grows while the torque approaches the
-/// load, and shrinks otherwise. Without stiffness (backlash) a step has the length of the region. On failure
-/// `unbalanced_torque` is the difference at the last angle.
+/// A trust region limits the step of the output angle. The region begins at a hundredth of a tooth space. It grows if
+/// the torque of the mesh comes nearer to the load, and shrinks if not. Without stiffness (backlash) a step has the
+/// length of the region. On failure SolveStatus::unbalanced_torque is the load minus the torque at the last angle.
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept;
 
-/// Inserts the wave generator at its full amplitude and balances the load.
+/// Inserts the wave generator at its full amplitude, then calls balanceOutput.
 SolveStatus insertUnderLoad(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept;
 
-/// Torque at the output that counts as balanced [N.m]: 1e-11 of the torque that turns the output by a tooth space at
-/// the present stiffness, or the rounding error of the ring's forces.
+/// Largest unbalanced torque at the output that counts as balanced [N.m]. It is 1e-11 of the torque that turns the
+/// output by a tooth space at the present stiffness, or the rounding error of the ring's forces, whichever is larger.
 double balanceTolerance(const RingEquilibrium& ring) noexcept;
 }  // namespace hjt

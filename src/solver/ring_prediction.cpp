@@ -11,11 +11,11 @@ namespace hjt
 namespace
 {
 constexpr int KEPT = 256;            // number of stored states over a pitch
-constexpr double MAX_PITCHES = 1e9;  // pitches are counted as int
+constexpr double MAX_PITCHES = 1e9;  // limit for a number of pitches as int
 
 constexpr int VECTORS = 3;  // vectors of a stored state
 
-/// Index of the stored state for a fraction of a pitch.
+/// Index of the stored state for a wave generator angle in pitches.
 int placeOf(double pitches) noexcept
 {
   return std::min(static_cast<int>((pitches - std::floor(pitches)) * KEPT), KEPT - 1);
@@ -45,7 +45,7 @@ RingPrediction::RingPrediction(const RingModel& model)
 
 void RingPrediction::predict(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double ALIKE = 0.8;  // least similarity that is not by chance
+  constexpr double ALIKE = 0.8;  // least similarity of two errors that is no coincidence [-]
   const int teeth = state.shape.solved;
   double share = 0.0;
   if (guessed_)
@@ -95,7 +95,7 @@ void RingPrediction::keep(const RingState& state) noexcept
           model_->rest.pitchAngle() &&
       std::abs(twistSince(kept, state.position)) < SAME_TWIST)
   {
-    return;  // too short a move
+    return;  // the stored state is at nearly this position
   }
   kept.known = true;
   kept.position = state.position;
@@ -108,7 +108,7 @@ void RingPrediction::keep(const RingState& state) noexcept
   std::copy(state.shape.space.begin(), state.shape.space.end(), kept_spaces_.col(place).data());
 }
 
-/// Change of the output's angle relative to the wave generator at the nominal ratio [rad].
+/// Turn of the output since the stored state minus the turn of the wave generator over the nominal ratio [rad].
 double RingPrediction::twistSince(const Kept& kept, const DrivePosition& position) const noexcept
 {
   return position.output_angle - kept.position.output_angle -
@@ -116,7 +116,7 @@ double RingPrediction::twistSince(const Kept& kept, const DrivePosition& positio
              model_->rest.pitchAngle();
 }
 
-/// @returns false and does nothing if no stored state is near enough.
+/// Guesses from the nearest stored state. @returns false and does nothing if no stored state is near enough.
 bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double NEAR_TWIST = 2e-5;  // [rad]
@@ -169,7 +169,7 @@ void RingPrediction::takeKeptRates(RingState& state) const noexcept
 
 void RingPrediction::guess(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double SMALL = 0.02;  // fraction of a pitch below which the tangent alone is as good
+  constexpr double SMALL = 0.02;  // turn below which the tangent alone gives as good a guess [pitches]
   const double pitch = model_->rest.pitchAngle();
   const double pitches = (target.wave_generator_angle - state.position.wave_generator_angle) / pitch;
   if (model_->meshed() && std::abs(pitches) > SMALL && std::abs(pitches) < MAX_PITCHES)
@@ -193,7 +193,7 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
     state.shape.points.swap(scratch_);
     if (u > 0.5)
     {
-      turnSpaces(state.shape.space.data(), sense, old_space_);  // the copy is nearer
+      turnSpaces(state.shape.space.data(), sense, old_space_);  // the copy one pitch further is nearer
       state.shape.space.swap(old_space_);
     }
   }
@@ -205,8 +205,8 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
   }
 }
 
-/// Turns the whole state with its spaces by `pitches` tooth pitches. With equal teeth the result is again an exact
-/// equilibrium, otherwise a good guess.
+/// Turns the whole state with its spaces by `pitches` tooth pitches. The result is an exact equilibrium if all teeth
+/// are equal, else a good guess.
 void RingPrediction::shift(int pitches, RingState& state) noexcept
 {
   for (Eigen::VectorXd* values : { &state.shape.points, &state.by_wave_generator, &state.by_output })
@@ -220,14 +220,14 @@ void RingPrediction::shift(int pitches, RingState& state) noexcept
   state.position.output_angle += pitches * pitch_output_angle_;
 }
 
-/// Turns the values of a ring by `pitches` tooth pitches: rotated, those of tooth i become those of tooth i + pitches.
+/// Turns the vectors of all teeth by `pitches` tooth pitches. Tooth i + pitches gets the rotated vector of tooth i.
 void RingPrediction::turn(const Eigen::VectorXd& values, int pitches, Eigen::VectorXd& turned) const noexcept
 {
   const double angle = pitches * model_->rest.pitchAngle();
   ring_vectors::turn(values, wrapped(pitches, model_->rest.teeth()), std::cos(angle), std::sin(angle), turned);
 }
 
-/// Turns the spaces by `pitches` tooth pitches.
+/// Turns the numbers of the teeth's spaces by `pitches` tooth pitches.
 void RingPrediction::turnSpaces(const int* space, int pitches, std::vector<int>& turned) const noexcept
 {
   const int spaces = model_->gear.teeth_circular_spline;

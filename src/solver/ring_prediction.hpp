@@ -11,12 +11,13 @@ namespace hjt
 {
 /// First guess of the ring's equilibrium at a new position.
 ///
-/// Whole tooth pitches of wave generator travel renumber the teeth. Over the remaining fraction of a pitch the guess is
-/// a cubic between the state and its copy one pitch further, forwards or backwards, with the tangents at both ends. The
-/// rest of the output's angle follows its own tangent. If the ring repeats after half a turn, the prediction stores the
-/// states of the last pitches by their position in the pitch and uses the tangents of the nearest one. The error of the
-/// last guess corrects the next one to the extent to which the last two errors were similar, because errors of single
-/// teeth do not turn with the wave generator.
+/// If the wave generator turns by whole tooth pitches, the guess is the old state with renumbered teeth. For the
+/// remaining fraction of a pitch the guess is a cubic between this state and its copy one pitch further, forwards or
+/// backwards, with the tangents of both states. A change of the torsion is added by the derivative by the output angle.
+/// If the ring repeats after half a turn, the prediction stores the states of the last pitches by their position in the
+/// pitch, and the guess is that of the tangent at the nearest stored state. The error of the last guess corrects the
+/// next guess as far as the last two errors were similar. They can differ, because errors by single teeth do not turn
+/// with the wave generator.
 class RingPrediction
 {
 public:
@@ -24,23 +25,23 @@ public:
 
   void setModel(const RingModel& copied) noexcept { model_ = &copied; }  ///< see RingEquilibrium::setModel
 
-  /// Predicts from the equilibrium that the last prediction led to.
+  /// Replaces `state` by the guess at `target`. `state`: the equilibrium that was solved from the last guess.
   void predict(const DrivePosition& target, RingState& state) noexcept;
 
-  /// Must be called if `predict` did not lead to the state.
+  /// Forgets the last guess and all stored states. Must be called if the state was not solved from the last guess.
   void forget() noexcept;
 
   /// Whether the last guess started from a stored state. Then the rates of `state` do not belong to its teeth.
   bool fromKept() const noexcept { return from_.kept >= 0; }
 
-  /// Copies rates and stiffness of that stored state to `state`.
+  /// Copies rates and stiffness of the stored state of the last guess to `state`.
   void takeKeptRates(RingState& state) const noexcept;
 
   /// Stores a solved state for later guesses.
   void keep(const RingState& state) noexcept;
 
 private:
-  /// A solved state without its points, rates and spaces.
+  /// Part of a stored state; kept_vectors_ and kept_spaces_ hold its points, rates and spaces.
   struct Kept
   {
     bool known{ false };
@@ -48,11 +49,11 @@ private:
     Eigen::Matrix2d stiffness;
     double cup_stiffness{};
   };
-  /// A stored state that is turned by whole pitches.
+  /// Stored state from which a guess starts, and the turn by whole pitches from this state to the guess.
   struct Source
   {
-    int kept{ -1 };  // -1: none
-    int places{};    // number of teeth of the half ring by which it is turned
+    int kept{ -1 };  // index of the stored state; -1: none
+    int places{};    // number of pitches of the turn within the half ring
     double cosine{};
     double sine{};
   };
@@ -67,17 +68,16 @@ private:
   const RingModel* model_;
   double pitch_cos_;
   double pitch_sin_;
-  double pitch_output_angle_;  // turn of the output that renumbers the spaces by one, for one tooth pitch [rad]
+  double pitch_output_angle_;  // turn of the output while the wave generator turns by a tooth pitch [rad]
   bool guessed_{ false };
   Source from_;             // source of the last guess
-  std::vector<Kept> kept_;  // states over one pitch
-  // Of a state that is known, else not set: points of the first half of the teeth and their rates by wave generator and
-  // by output, a column each; spaces of all teeth.
+  std::vector<Kept> kept_;  // stored states over one pitch
+  // For each known stored state three columns: points of the first half of the teeth, their rates by wave generator
+  // angle, and their rates by output angle. The columns of kept_spaces_ hold the spaces of all teeth.
   Eigen::MatrixXd kept_vectors_;
   Eigen::MatrixXi kept_spaces_;
-  Eigen::VectorXd guess_;        // the last, not corrected
-  Eigen::VectorXd guess_error_;  // of the one before
-  // Working memory.
+  Eigen::VectorXd guess_;        // last guess without correction [m]
+  Eigen::VectorXd guess_error_;  // error of the guess before the last one [m]
   Eigen::VectorXd scratch_;
   std::vector<int> old_space_;
 };

@@ -16,7 +16,7 @@ HJT_VECTOR_CLONES double largest(const Eigen::VectorXd& values, int teeth) noexc
   const int n = 2 * teeth;
   const double* __restrict__ value = values.data();
   double most = 0.0;
-  double sum = 0.0;  // sums for NaN, which a comparison does not detect; its last bits are not used
+  double sum = 0.0;  // shows a NaN, which a comparison does not detect
 #pragma omp simd reduction(max : most) reduction(+ : sum)
   for (int i = 0; i < n; ++i)
   {
@@ -54,7 +54,7 @@ HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::Vector
   const int n = teeth;
   const double* __restrict__ first = a.data();
   const double* __restrict__ second = b.data();
-  double changed = 0.0;  // double like the values, so that the loop vectorises
+  double changed = 0.0;  // a double like the values, so that the compiler vectorises the loop
 #pragma omp simd reduction(+ : changed)
   for (int i = 0; i < n; ++i)
   {

@@ -9,11 +9,11 @@
 
 namespace hjt
 {
-/// Vectorised loops over the coordinates of the first `teeth` teeth, which the solver uses at every step. Vectors of
-/// one call have equal size and must be different objects, unless stated.
+/// Vectorised loops over the coordinates of the first `teeth` teeth, which the solver calls in every step. All vectors
+/// of a call have equal size and must be different objects.
 namespace ring_vectors
 {
-/// Largest absolute value; NaN if one is not finite.
+/// Largest absolute value; NaN if any value is not finite.
 double largest(const Eigen::VectorXd& values, int teeth) noexcept;
 
 /// result = start + length * step.
@@ -22,13 +22,14 @@ void addScaled(const Eigen::VectorXd& start, double length, const Eigen::VectorX
 
 double dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// Number of values whose sign differs: positive in one vector and not in the other.
+/// Number of values that are positive in one vector and not positive in the other.
 int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) noexcept;
 
-/// Turns x and y of all teeth by an angle of cosine c and sine s, to the tooth `places` further (0 ... N - 1).
+/// Turns all teeth: tooth i + `places` gets x and y of tooth i, rotated by the angle with the cosine `c` and the sine
+/// `s`. `places`: 0 ... number of teeth - 1.
 void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::VectorXd& turned) noexcept;
 
-/// A linear combination of three vectors.
+/// Linear combination of three vectors.
 struct Combination
 {
   const double* a;
@@ -43,18 +44,19 @@ struct Combination
   };
 };
 
-/// result = the combination, turned to the tooth `places` further (0 ... teeth - 1), on a half ring of `teeth` teeth:
-/// values that leave it at its end enter at its start with opposite sign.
+/// result = the combination, turned as in `turn`, on a half ring of `teeth` teeth. Values that leave the half ring at
+/// its end enter at its start with opposite sign. `places`: 0 ... teeth - 1.
 void turnHalf(const Combination& vectors, const Combination::Factors& factors, int places, double c, double s,
               Eigen::VectorXd& result, int teeth) noexcept;
 
-/// result = the combination with factors `here` + the one with the other factors, turned to the tooth `places` further
-/// as in `turn`. The vectors have all teeth; of the result the first `teeth` are computed.
+/// result = the combination with the factors `here` + the combination with the factors `turned`, turned as in `turn`.
+/// The vectors have all teeth. Only the first `teeth` teeth of the result are computed.
 void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
                int places, double c, double s, Eigen::VectorXd& result, int teeth) noexcept;
 }  // namespace ring_vectors
 
-/// The ring at a position with its derivatives by both angles: all data that a failed move must restore.
+/// The ring at a position, with its derivatives by motor and output angle. These are all data that a failed move
+/// restores.
 struct RingState
 {
   explicit RingState(const RingModel& model)
@@ -65,7 +67,7 @@ struct RingState
   {
   }
 
-  /// Copies another state without directions and lengths of its shape, which RingShape::updateGeometry computes.
+  /// Copies another state except directions and lengths of its shape, which RingShape::updateGeometry computes again.
   void keep(const RingState& other) noexcept
   {
     const auto copy = [](const Eigen::VectorXd& from, Eigen::VectorXd& to)
@@ -86,8 +88,8 @@ struct RingState
   /// derivatives of the tooth points in equilibrium by wave generator angle [m/rad]
   Eigen::VectorXd by_wave_generator;
   Eigen::VectorXd by_output;  ///< derivatives of the tooth points in equilibrium by output angle [m/rad]
-  Eigen::Matrix2d stiffness;  ///< by (wave generator, output) angle, with the ring in equilibrium [N.m/rad]
-  /// slope of the cup for which rates and stiffness hold; 0: they belong to no tangent [N.m/rad]
+  Eigen::Matrix2d stiffness;  ///< see RingEquilibrium::stiffness [N.m/rad]
+  /// slope of the cup for which rates and stiffness are valid [N.m/rad]; 0: rates and stiffness are not valid
   double cup_stiffness{};
   double residual{};  ///< largest out-of-balance force component on a tooth [N]
 };

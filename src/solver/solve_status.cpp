@@ -18,14 +18,14 @@ const char* failureOf(SolveStage stage) noexcept
   return TEXTS[static_cast<std::size_t>(stage)];
 }
 
-/// solver.max_iterations of config/solver.yaml, which suffices for all shipped gears.
+/// Value of solver.max_iterations in config/solver.yaml, which suffices for all shipped gears.
 constexpr int SHIPPED_MAX_ITERATIONS = 20;
 
 std::string adviceOf(const SolveStatus& status)
 {
   if (status.code == SolveCode::NOT_FINITE)
   {
-    return "a number overflowed; check for extreme parameters or angles";
+    return "a number overflowed. Look for extreme values among the parameters and angles";
   }
   if (status.max_iterations > 0 && status.max_iterations < SHIPPED_MAX_ITERATIONS)
   {
@@ -34,17 +34,17 @@ std::string adviceOf(const SolveStatus& status)
   }
   if (status.stage == SolveStage::INSERTION || status.code == SolveCode::DISENGAGED)
   {
-    return "the gear does not fit together; compare gear.wave_amplitude, gear.rim_thickness, "
+    return "the parts of the gear do not fit together. Compare gear.wave_amplitude, gear.rim_thickness, "
            "gear.tooth_height_flexspline, gear.tip_radius_circular_spline, mesh.flank_clearance and the numbers of "
-           "teeth";
+           "teeth with those of a shipped gear";
   }
   if (status.stage == SolveStage::BALANCE)
   {
-    return "the teeth do not carry the load; reduce it";
+    return "the teeth do not carry the load. Reduce the load";
   }
   return status.code == SolveCode::ITERATION_LIMIT ?
              "take smaller steps, or raise solver.max_step_cuts" :
-             "take smaller steps, or reduce the load: the teeth may be about to jump";
+             "take smaller steps, or reduce the load, under which the teeth may be about to jump";
 }
 }  // namespace
 
@@ -69,7 +69,7 @@ std::string explanationOf(const SolveStatus& status)
   }
   else if (status.stage == SolveStage::BALANCE)
   {
-    text << status.unbalanced_torque << " N.m not carried";
+    text << "the teeth do not carry " << status.unbalanced_torque << " N.m of the load";
   }
   else
   {

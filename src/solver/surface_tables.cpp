@@ -16,7 +16,7 @@ struct Corners
   std::array<float, 4> weight;
 };
 
-/// Interpolates `count` stored teeth from `first` on.
+/// Interpolates the values of `count` stored teeth between four nodes. `first`: number of the first of these teeth.
 void blend(const Corners& from, std::size_t first, std::size_t count, double* out) noexcept
 {
   const float* a = from.node[0] + first;
@@ -65,7 +65,8 @@ bool ToothResponse::at(double motor_angle, double output_angle, double* const* o
                    { weight(1.0 - across, 1.0 - along), weight(across, 1.0 - along), weight(1.0 - across, along),
                      weight(across, along) } };
 
-  // Stored tooth i has become tooth i + turned. In its copy half a turn away the positions have the opposite sign.
+  // The values of stored tooth i belong to tooth i + turned. The tooth half a turn away has the same values, except
+  // that its positions have the opposite sign.
   const auto count = static_cast<std::size_t>(stored);
   const auto all = static_cast<std::size_t>(teeth);
   const auto turned = static_cast<std::size_t>(whole - std::floor(whole / teeth) * teeth);
@@ -79,7 +80,7 @@ bool ToothResponse::at(double motor_angle, double output_angle, double* const* o
     {
       const double sign = quantity == X || quantity == Y ? -1.0 : 1.0;
       const std::size_t edge = turned % count;
-      const std::size_t from = turned < count ? 0 : count;  // index of the stored tooth, from the edge on
+      const std::size_t from = turned < count ? 0 : count;  // first tooth of the half that begins with stored values
       repeat(of_quantity + from + edge, count - edge, sign, of_quantity + (count - from) + edge);
       repeat(of_quantity + (count - from), edge, sign, of_quantity + from);
     }
@@ -106,7 +107,8 @@ namespace
 {
 using Weights = std::array<double, 4>;
 
-/// Cubic B-splines of the four nearest knots with derivatives; `t` goes from the second to the third knot.
+/// Values and derivatives of the cubic B-splines of the four nearest knots. `t`: position from the second to the third
+/// knot, 0 ... 1.
 struct Spline
 {
   explicit Spline(double t) noexcept
@@ -122,7 +124,7 @@ struct Spline
   Weights second;
 };
 
-/// A position on an even grid with a period of `count` intervals.
+/// Position on an even grid with a period of `count` intervals.
 struct RoundPlace
 {
   RoundPlace(double at, int count) noexcept
@@ -143,7 +145,8 @@ struct RoundPlace
 
 using Energies = Eigen::Array4d;
 
-/// Energy and forces by the numbers of derivatives by u, w and chi: coefficients of the powers of the drop.
+/// Coefficients of the powers of the drop. e<ijk>: energy, derived i times by u, j times by w and k times by chi.
+/// forces: contact force and flank friction.
 struct TableEnergies
 {
   Energies e000{ Energies::Zero() };
@@ -159,7 +162,7 @@ struct TableEnergies
   Energies forces{ Energies::Zero() };
 };
 
-/// `w`: position between the line `below` and the next.
+/// `w`: position between the line `below` and the next line, 0 ... 1.
 TableEnergies energiesIn(const BallTable& table, const RoundPlace& u, double w, int below,
                          const RoundPlace& chi) noexcept
 {
@@ -213,7 +216,7 @@ BallDrops::Change BallDrops::at(double motor_angle, double v) const noexcept
   return drop.value != 0.0 ? ofBall(motor_angle, v, bearing_.ballPlace(ball, motor_angle), drop) : Change{};
 }
 
-/// Change by the drop of one ball at an angle in the housing [rad].
+/// Change of the ring by the drop of one ball. `place`: angle of the ball in the housing [rad].
 BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
                                     const RaceDeflection::Drop& drop) const noexcept
 {
@@ -231,9 +234,9 @@ BallDrops::Change BallDrops::ofBall(double motor_angle, double v, double place,
   const auto times = [](const Energies& a, const Energies& b) { return (a * b).sum(); };
 
   const double root = 1.0 / std::sqrt(v * v + table.scale * table.scale);
-  const double w_v = root / table.step;  // derivative of w, in lines, by v
+  const double w_v = root / table.step;  // derivative of w [lines] by v [1/rad]
   const double w_vv = -v * root * root * root / table.step;
-  const double u_u = table.columns;  // derivative of u, in columns, by pitches
+  const double u_u = table.columns;  // columns of the table in a pitch
   // Derivatives by u in pitches: chi_u of the ball's angle relative to the wave generator, in grid intervals; h_u and
   // h_uu of the ball's drop [m].
   const double chi_u = (bearing_.cageRate() - 1.0) * table.pitch * table.places / table.turn;

@@ -13,7 +13,7 @@
 
 namespace hjt
 {
-/// Constant values, from a vector or from a file mapped into memory. Copies share them.
+/// Constant values, from a vector or from a file mapped into memory. Copies share the memory.
 template <class T>
 class SharedValues
 {
@@ -74,12 +74,13 @@ struct SurfaceEnergy
   }
 };
 
-/// Checks of a table against the ring up to the torque limit, halfway between columns and halfway between lines where
-/// the grid was not refined further. A miss is the largest difference over its tolerance [-].
+/// Result of the comparisons of a table with the full ring, up to the torque limit. They were made halfway between
+/// columns, and halfway between lines where the grid was not refined further. A miss is the largest difference between
+/// table and ring over the tolerance [-].
 struct GridChecks
 {
   int made{};      ///< number of checks
-  int missed{};    ///< number of checks with a miss above 1, where the grid has its finest interval
+  int missed{};    ///< number of checks with a miss above 1, which remain where the grid has its finest interval
   double worst{};  ///< largest miss
 
   void add(double miss) noexcept
@@ -90,8 +91,8 @@ struct GridChecks
   }
 };
 
-/// Forces and positions of all teeth of the ring in equilibrium, for a gear of equal teeth, over u and v as in
-/// SurfaceTable. One pitch further, each tooth has the values of the preceding one. The table is plain data.
+/// Forces and positions of all teeth of the ring in equilibrium, for a gear with equal teeth, over u and v as in
+/// SurfaceTable. One pitch further, each tooth has the values of the preceding tooth. The table is plain data.
 struct ToothResponse
 {
   /// Quantities of each tooth, in the order of storage.
@@ -100,29 +101,30 @@ struct ToothResponse
     WAVE_GENERATOR_FORCE,  ///< [N]
     RIM_TENSION,           ///< tension to the next tooth [N]
     BENDING_FORCE,         ///< force of the segment to the next tooth [N]
-    MESH_FORCE,            ///< > 0 leading, < 0 trailing flank [N]
+    MESH_FORCE,            ///< force on the flank; > 0 leading flank, < 0 trailing flank [N]
     X,                     ///< x of the tooth point, with the wave generator within the first pitch [m]
     Y,                     ///< y of the tooth point [m]
     QUANTITIES
   };
 
-  int teeth{};                ///< teeth of the flexspline
-  int stored{};               ///< stored teeth: half of them if half a turn changes only the sign of the positions
-  int columns{};              ///< equal intervals of u in a pitch
+  int teeth{};                ///< number of teeth of the flexspline
+  int stored{};               ///< number of stored teeth: half of all if half a turn changes only signs of positions
+  int columns{};              ///< number of equal intervals of u in a pitch
   double pitch{};             ///< [rad]
   double ratio{};             ///< nominal ratio [-]
   std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: there is no table
-  /// the stored teeth of a quantity, the quantities of a node, and columns + 1 nodes for each line
+  /// for each line columns + 1 nodes, for each node all quantities, for each quantity the stored teeth
   SharedValues<float> values;
   GridChecks checks{};
 
   std::size_t nodeSize() const noexcept { return static_cast<std::size_t>(QUANTITIES) * static_cast<unsigned>(stored); }
 
-  /// `out`: for each quantity an array of all teeth. @returns false and does nothing outside the table.
+  /// Interpolates the table. `out`: for each quantity an array of all teeth. @returns false and does nothing if the
+  /// angles are outside the table.
   bool at(double motor_angle, double output_angle, double* const* out) const noexcept;
 };
 
-/// Table of the change of the ring in equilibrium if one ball of the wave generator's bearing drops by h, over
+/// Table of the change of the ring in equilibrium by one ball of the wave generator's bearing that drops by h, over
 ///
 ///   u    wave generator angle [tooth pitches], period 1
 ///   v    output angle - wave generator angle / ratio [rad]
@@ -134,9 +136,9 @@ struct BallTable
 {
   enum Value
   {
-    ENERGY,             // coefficients of x, x^2, x^3, x^4 [J]
-    CONTACT_FORCE = 4,  // coefficients of x, x^2 [N]
-    FLANKS = 6,         // coefficients of x, x^2: relative change of the flank friction as the drive runs [-]
+    ENERGY,             // stored energy: coefficients of x, x^2, x^3, x^4 [J]
+    CONTACT_FORCE = 4,  // sum of the wave generator's forces: coefficients of x, x^2 [N]
+    FLANKS = 6,         // relative change of the flank friction in a running drive: coefficients of x, x^2 [-]
     VALUES = 8
   };
   using Coefficients = Eigen::Array<double, VALUES, 1>;
@@ -148,18 +150,18 @@ struct BallTable
   double scale{};    ///< scale of v [rad]
   double lowest{};   ///< w of the first line [-]
   double step{};     ///< difference of w between lines [-]
-  int lines{};       ///< intervals of w; there are lines + 3 coefficients
-  int columns{};     ///< intervals of u in a pitch
-  int places{};      ///< intervals of chi in a turn
+  int lines{};       ///< number of intervals of w, with lines + 3 coefficients
+  int columns{};     ///< number of intervals of u in a pitch
+  int places{};      ///< number of intervals of chi in a turn
   /// Coefficients of line i (-1 ... lines + 1), column j and place k have the index ((i + 1) columns + j) places + k.
   std::vector<Coefficients> coefficients;
 };
 
-/// The table of a gear's balls with the faults of its bearing.
+/// The BallTable of a gear with the faults of its bearing.
 class BallDrops
 {
 public:
-  /// `bearing`: bearing of the table's gear, of which one ball at a time drops, by no more than `deepest`.
+  /// `bearing`: bearing of the table's gear. One ball at a time drops, by at most BallTable::deepest.
   BallDrops(std::shared_ptr<const BallTable> table, const RaceDeflection& bearing)
     : table_(std::move(table)), bearing_(bearing)
   {
@@ -167,8 +169,9 @@ public:
 
   const std::shared_ptr<const BallTable>& table() const noexcept { return table_; }
 
-  /// Change of the gear by the ball that has dropped. The wave generator moves the balls, so derivatives by u are at
-  /// constant v. The change of the outer race's friction, a hundredth of that of the flanks, is neglected.
+  /// Change of the gear by the ball that has dropped. Derivatives by u are at constant v and include the motion of the
+  /// balls with the wave generator. The change of the outer race's friction, a hundredth of that of the flank friction,
+  /// is neglected.
   struct Change
   {
     SurfaceEnergy energy;

@@ -9,8 +9,8 @@ namespace hjt
 enum class SolveCode
 {
   CONVERGED,        ///< out-of-balance forces are within solver.force_tolerance
-  ITERATION_LIMIT,  ///< solver.max_iterations was reached, even on the shortest path
-  NO_DESCENT,       ///< no step reduced the out-of-balance forces, even on the shortest path
+  ITERATION_LIMIT,  ///< solver.max_iterations was reached, even after the solver halved the path as often as allowed
+  NO_DESCENT,       ///< no step reduced the out-of-balance forces, even after the last allowed halving of the path
   SINGULAR,         ///< the tangent matrix has no inverse
   NOT_FINITE,       ///< a value became NaN or infinite
   UNBALANCED,       ///< no output angle within reach balances the load
@@ -22,8 +22,8 @@ enum class SolveStage
 {
   INSERTION,  ///< insertion of the wave generator
   MOTION,     ///< motion of wave generator and output to given angles
-  BALANCE,    ///< balance of the load by an output angle
-  FRICTION    ///< friction in a step of the joint: speeds at which it balances the other torques
+  BALANCE,    ///< search for the output angle at which the gear balances the load
+  FRICTION    ///< solution for the speeds after a step under dry friction
 };
 
 /// Outcome of a solve. The caller must check it.
@@ -33,14 +33,14 @@ struct [[nodiscard]] SolveStatus
   SolveStage stage{ SolveStage::MOTION };  ///< task in which the solve ended
   int iterations{};                        ///< Newton iterations of all attempts
   int cuts{};                              ///< number of times that the solver halved the path
-  int max_iterations{};                    ///< solver.max_iterations if the last attempt reached it; else 0
-  int jumps{};                 ///< teeth that changed their space through a tip: by ratcheting, or by too long a move
+  int max_iterations{};                    ///< solver.max_iterations if the last attempt reached this limit; else 0
+  int jumps{};  ///< number of teeth that passed over a tip into another space, by ratcheting or in too long a move
   double residual{};           ///< largest out-of-balance force component on a tooth [N]
   double unbalanced_torque{};  ///< part of the load that the mesh did not balance [N.m]
 
   bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< whether the solve converged
 
-  /// Adds the iterations and cuts of an earlier attempt.
+  /// Adds the iterations and cuts of an earlier attempt to those of this status.
   SolveStatus& addEffort(const SolveStatus& before) noexcept
   {
     iterations += before.iterations;
@@ -52,6 +52,6 @@ struct [[nodiscard]] SolveStatus
 /// Name of the code as in the source, for example "NO_DESCENT".
 const char* nameOf(SolveCode code) noexcept;
 
-/// Message for the user: the stage that failed, the code, the remaining forces and advice.
+/// Message for the user, with the stage that failed, the code, the remaining forces and advice.
 std::string explanationOf(const SolveStatus& status);
 }  // namespace hjt
