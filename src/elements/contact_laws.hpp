@@ -5,10 +5,10 @@
 
 namespace hjt
 {
-/// Unilateral contact of unit stiffness: energy, force and tangent as functions of the depth.
+/// Unilateral contact of unit stiffness: energy, force and tangent as functions of the depth of penetration.
 ///
-/// width = 0, the exact law:  force = <depth>+
-/// width > 0, a C1 ramp:      force = depth^2 / (2 width)  for depth < width,  depth - width/2  beyond
+/// width = 0, the exact law:  force = max(depth, 0)
+/// width > 0, a C1 ramp:      force = depth^2 / (2 width)  for 0 < depth < width,  depth - width/2  for larger depths
 struct ContactRamp
 {
   double energy{};   ///< [m^2]
@@ -17,7 +17,7 @@ struct ContactRamp
 
   ContactRamp(double depth, double width) noexcept
   {
-    // Computing both branches and selecting one lets the loops over the teeth vectorise.
+    // The loops over the teeth vectorise because both branches are computed before one is selected.
     const double part = depth / width;
     const double full_force = depth - 0.5 * width;
     const double full_energy = 0.5 * full_force * full_force + width * width / 24.0;
@@ -31,8 +31,8 @@ struct ContactRamp
   }
 };
 
-/// Hertz' point contact of unit stiffness: energy, force and tangent as functions of the depth. The tangent goes to
-/// zero without a jump where the contact opens.
+/// Hertz' point contact of unit stiffness: energy, force and tangent as functions of the depth of penetration. At the
+/// depth 0, where the contact opens, the tangent is 0.
 struct HertzContact
 {
   double energy{};   ///< [m^2.5]
@@ -49,14 +49,14 @@ struct HertzContact
   }
 };
 
-/// Stiffness K of a steel ball between two races, Q = K depth^1.5 [N/m^1.5]; depth: approach of the races. Palmgren,
-/// for ball bearings with the usual osculation: depth = 4.36e-4 Q^(2/3) d^(-1/3) in mm and N, with d = `ball_diameter`
-/// [m].
+/// Stiffness K of a steel ball between two races [N/m^1.5]: Q = K depth^1.5, Q = force, depth = approach of the races.
+/// Palmgren's formula for ball bearings with the usual osculation is depth = 4.36e-4 Q^(2/3) d^(-1/3) in mm and N,
+/// where d is the diameter of the ball, here `ball_diameter` [m].
 inline double hertzStiffness(double ball_diameter) noexcept
 {
   constexpr double PALMGREN = 4.36e-4;                                         // mm^(4/3) / N^(2/3)
-  constexpr double MILLIMETRES = 1e3;                                          // in a metre
-  const double per_force = PALMGREN / std::cbrt(MILLIMETRES * ball_diameter);  // depth over Q^(2/3) [mm/N^(2/3)]
+  constexpr double MILLIMETRES = 1e3;                                          // millimetres in a metre
+  const double per_force = PALMGREN / std::cbrt(MILLIMETRES * ball_diameter);  // depth / Q^(2/3) [mm/N^(2/3)]
   const double depth_scale = MILLIMETRES / per_force;
   return depth_scale * std::sqrt(depth_scale);
 }

@@ -13,26 +13,28 @@ namespace hjt
 {
 /// Torsion of the flexspline's cup between the toothed rim and the flange (thesis eq. 7.1-7.2).
 ///
-/// Torque:  C(Phi), odd, piecewise linear: slope K1 up to torque T1, K2 up to T2, K3 beyond
+/// Torque:  C(Phi), an odd, piecewise linear function: slope K1 up to the torque T1, K2 up to T2, K3 above T2
 /// where    Phi  mean rotation of the tooth points from rest, mean_i(psi_i - psi0_i) [rad]
+///          psi_i, psi0_i  angle of tooth point i, now and at rest [rad]
 ///
-/// The torque acts on the mean rotation. The thesis applies it to each tooth, which would make the cup N times too
-/// stiff and resist the travelling wave.
+/// The torque acts on the mean rotation. The thesis applies the torque to each tooth. This would make the cup too stiff
+/// by the number of teeth, and the cup would resist the travelling wave.
 ///
-/// The curve is the catalogue's for the whole gear minus the compliance of the model's rim, teeth and bearing. The wall
-/// and the diaphragm contribute 1/K_W of its compliance; no other part of the model represents the rest.
+/// The curve C is that of the catalogue for the whole gear without the compliance of the model's rim, teeth and
+/// bearing. The wall and the diaphragm of the cup contribute 1/K_W (cup.wall_stiffness) to the compliance of C. No
+/// other part of the model represents the remaining compliance.
 class CupTorsion
 {
 public:
   CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. The rest of the compliance and the breakpoints
-  /// do not change.
+  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. The remaining compliance and the breakpoints
+  /// T1 and T2 do not change.
   void scaleWall(double factor) noexcept;
 
   /// mean rotation Phi of the tooth points from rest [rad]
   double meanRotation(const RingShape& shape) const noexcept;
-  /// Rate dPhi/dt of the mean rotation [rad/s] for speeds of the ring's points, 2 N [m/s].
+  /// Rate dPhi/dt of the mean rotation [rad/s]. `speeds`: x and y of the speed of each tooth point [m/s].
   static double meanRotationRate(const RingShape& shape, const Eigen::VectorXd& speeds) noexcept;
   double torque(double rotation) const noexcept;           ///< torque C(Phi) [N.m]
   double rotationAtTorque(double torque) const noexcept;   ///< inverse of C(Phi) [rad]
@@ -63,7 +65,7 @@ private:
   std::array<double, 3> slopes_;
   std::array<double, 3> compliances_{};  // 1 / slopes_
   std::array<double, 2> torques_;
-  std::array<double, 2> rotations_;  // rotations at the breakpoints [rad]
+  std::array<double, 2> rotations_;  // mean rotations at the breakpoints [rad]
   Eigen::VectorXd rest_radial_;
 };
 }  // namespace hjt

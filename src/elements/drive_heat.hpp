@@ -10,15 +10,16 @@
 
 namespace hjt
 {
-/// Heat of the drive with two capacities: the grease with all moving parts of the drive, and the housing.
+/// Heat of the drive in two heat capacities: the grease with all moving parts of the drive, and the housing.
 ///
 ///   C_g dT_g/dt = P_f - G (T_g - T_h)
 ///   C_h dT_h/dt = P_m + P_0 + G (T_g - T_h) - G_a (T_h - T_a)
-/// where P_f friction, P_m copper loss of the motor, P_0 standby power                                      [W]
-///       C_g, C_h  heat capacities [J/K], G, G_a  conductances [W/K], T_a  temperature of the surroundings
+/// where T_g, T_h, T_a  temperatures of grease, housing and surroundings [degC]; C_g, C_h  heat capacities [J/K]
+///       G, G_a  conductances [W/K]; P_f  friction, P_m  copper loss of the motor, P_0  standby power [W]
 ///
-/// A step is exact for constant powers and surroundings, whatever its length: the two modes of the symmetric problem in
-/// sqrt(C) T decay independently. Without losses to the surroundings (G_a = 0) heat is conserved to rounding.
+/// A step of any length is exact for constant powers and surroundings. It uses that the two modes of the symmetric
+/// problem in sqrt(C) T decay independently. Without losses to the surroundings (G_a = 0) heat is conserved to
+/// rounding.
 class DriveHeat
 {
 public:
@@ -37,7 +38,7 @@ public:
     modes_ = solver.eigenvectors();
   }
 
-  /// Sets both temperatures to the surroundings [degC] plus the configured rise.
+  /// Sets both temperatures to that of the surroundings, `ambient` [degC], plus the configured rise.
   void reset(double ambient) noexcept
   {
     grease_ = ambient + parameters_.grease_rise;
@@ -51,7 +52,7 @@ public:
     double copper{};
   };
 
-  /// Advances both temperatures by `seconds` in surroundings of `ambient` [degC].
+  /// Advances both temperatures by `seconds` in surroundings of the temperature `ambient` [degC].
   void advance(double seconds, const Losses& losses, double ambient) noexcept
   {
     const Eigen::Vector2d above(grease_ - ambient, housing_ - ambient);
@@ -68,7 +69,7 @@ public:
     housing_ = ambient + temperature[1];
   }
 
-  /// Advances only the grease, for a measured temperature of the housing [degC].
+  /// Advances only the temperature of the grease. `housing`: measured temperature of the housing [degC].
   void advanceGrease(double seconds, double friction, double housing) noexcept
   {
     const double rate = parameters_.internal_conductance / parameters_.grease_capacity;
@@ -81,7 +82,7 @@ public:
   double housing() const noexcept { return housing_; }  ///< [degC]
 
 private:
-  // Mean of exp(-rate t) over a step that begins at t = 0 [-].
+  // Mean of exp(-rate t) over a step from t = 0 to `seconds` [-].
   static double meanDecay(double rate, double seconds) noexcept
   {
     const double decay = rate * seconds;
@@ -89,7 +90,7 @@ private:
   }
 
   ThermalParameters parameters_;
-  Eigen::Vector2d root_;   // square roots of both capacities [sqrt(J/K)]
+  Eigen::Vector2d root_;   // square roots of both heat capacities [sqrt(J/K)]
   Eigen::Vector2d rates_;  // decay rates of the modes [1/s]
   Eigen::Matrix2d modes_;  // orthonormal columns
   double grease_{};

@@ -14,14 +14,15 @@
 
 namespace hjt
 {
-/// A dry friction: a force that opposes a slip. Its power is strength * |slip . (motor speed, output speed)|.
+/// Dry friction that opposes a slip. Its power is strength * |slip . (motor speed, output speed)| [W].
 struct FrictionTerm
 {
   double strength;       ///< force or torque, >= 0 [N] or [N.m]
   Eigen::Vector2d slip;  ///< slip speed per motor and output speed [m/rad] or [-]
 };
 
-/// Dry frictions in storage of fixed size, as arrays by quantity for vectorised loops. Zeros fill the last PACK.
+/// Dry frictions in storage of fixed size, with one array for each quantity, so that loops vectorise. Zeros fill the
+/// last pack of PACK terms.
 class FrictionTerms
 {
 public:
@@ -35,7 +36,7 @@ public:
     using One = Eigen::Array<double, 1, 1>;
     add(One(term.strength), One(term.slip[0]), One(term.slip[1]));
   }
-  /// Adds several terms; a term without slip has no effect.
+  /// Adds several terms. A term without slip has no effect.
   template <class Numbers>
   void add(const Numbers& strength, const Numbers& by_motor, const Numbers& by_output) noexcept
   {
@@ -54,7 +55,7 @@ public:
   void setStrength(int i, double strength) noexcept { values_(i, 0) = strength; }
 
   int size() const noexcept { return size_; }
-  int packedSize() const noexcept { return packed(size_); }  ///< size with the zeros of the last PACK
+  int packedSize() const noexcept { return packed(size_); }  ///< number of terms with the zeros of the last pack
   FrictionTerm operator[](int i) const noexcept { return { values_(i, 0), { values_(i, 1), values_(i, 2) } }; }
   const double* strength() const noexcept { return values_.col(0).data(); }
   const double* byMotor() const noexcept { return values_.col(1).data(); }
@@ -84,14 +85,14 @@ private:
   int size_{};
 };
 
-/// Friction of the joint with respect to its two angles: dry terms and a viscous matrix.
+/// Friction of the joint with respect to motor and output angle, as dry terms and a viscous matrix.
 ///
-/// The ring is in equilibrium at the two angles, so each slip in it is a linear combination of the two speeds. Friction
-/// acts on the angles by virtual power. Its effect on the shape of the ring, of the order of the friction coefficient,
-/// is neglected.
+/// The ring is in equilibrium at these two angles, so each slip in the ring is a linear combination of the speeds of
+/// motor and output. The principle of virtual power gives the torques of friction on motor and output. The effect of
+/// friction on the shape of the ring, of the order of the friction coefficient, is neglected.
 struct JointFriction
 {
-  /// Allocates one term for each tooth, and those of motor shaft, cup and output.
+  /// Allocates the terms: one for each tooth, and three for motor shaft, cup and output.
   explicit JointFriction(int teeth) : terms(teeth + 3), running(2 * teeth), flank_load(teeth) {}
 
   void setZero() noexcept
@@ -100,7 +101,7 @@ struct JointFriction
     viscous.setZero();
   }
 
-  /// Power of the dry terms at these speeds of motor and output [W]; torque for unit speeds.
+  /// Power of the dry terms at these speeds of motor and output [W].
   double dryPower(const Eigen::Vector2d& speeds) const noexcept
   {
     double power = 0.0;
@@ -112,31 +113,31 @@ struct JointFriction
   }
 
   FrictionTerms terms;
-  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle and is therefore no term [N.m]
+  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle, so that it is no term [N.m]
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque per speed, positive semi-definite [N.m.s/rad]
-  /// 2 N, derivatives of the ring's points by the motor angle [m/rad], while the output turns at the velocity ratio
+  /// derivatives of x and y of each tooth point by the motor angle while the output turns at the velocity ratio [m/rad]
   Eigen::VectorXd running;
-  // Data of the full ring from which the strengths of the shaft's and the flanks' terms at other speeds follow.
+  // These data of the full ring determine the strengths of the terms of shaft and flanks at other speeds.
   double contact_force{};      ///< sum of the wave generator's forces [N]
   double ring_torque{};        ///< torque of JointModel::ringTorque [N.m]
-  int flanks{};                ///< number of flank terms, which follow the shaft's term
-  Eigen::VectorXd flank_load;  ///< N, normal forces of the flank terms [N]
+  int flanks{};                ///< number of terms of flanks, which follow the term of the shaft
+  Eigen::VectorXd flank_load;  ///< normal force of each term of a flank [N]
 };
 
-/// Mobilised share of a dry friction from which a body counts as sliding [-].
+/// Mobilised share of a dry friction above which a body counts as sliding [-].
 constexpr double SLIDING_SHARE = 0.95;
 
-/// Mobilised share of a dry friction, between -1 and 1, after a further turn (exact solution of Dahl's model):
+/// Mobilised share s of a dry friction after a further turn, -1 ... 1 [-]. This is the exact solution of Dahl's model:
 ///
 ///   ds/dx = (1 - s sgn(dx)) / angle
-/// `turn` dx and `angle` in rad, angle > 0.
+/// `share`: s before the turn; `turn`: further turn dx [rad]; `angle`: turn over which friction builds up, > 0 [rad].
 inline double mobilised(double share, double turn, double angle) noexcept
 {
   const double end = std::copysign(1.0, turn);
   return end + (share - end) * std::exp(-std::abs(turn) / angle);
 }
 
-/// Friction of the wave generator's ball bearing by Palmgren (thesis eq. 7.31-7.33). Both parts oppose the speed.
+/// Friction of the wave generator's ball bearing by Palmgren (thesis eq. 7.31-7.33), the sum of the torques T0 and T1:
 ///
 ///   T0 = f0 (nu n)^(2/3) d_m^3 1e-7   for nu n >= 2000,   f0 160 d_m^3 1e-7  below   [N.mm]
 ///   T1 = f1 (F + F_race) d_m                                                         [N.mm]
@@ -144,7 +145,7 @@ inline double mobilised(double share, double turn, double angle) noexcept
 ///       d_m bearing.pitch_diameter, here in mm
 ///       n   motor speed [rpm]
 ///       F   sum of the contact forces between wave generator and flexspline [N]
-///       F_race  bearing.race_preload: ball forces of the outer race, which is bent to the ellipse [N]
+///       F_race  bearing.race_preload: forces of the outer race on the balls, because it is bent to the ellipse [N]
 ///       nu  effective viscosity of the speed-dependent friction [mm^2/s]
 ///
 /// The viscosity nu depends on the temperature T [K] of the oil in the grease:
@@ -162,25 +163,25 @@ public:
   {
   }
 
-  /// Multiplies the viscosity of the grease by `factor` at all temperatures [-].
+  /// Multiplies the viscosity of the grease at all temperatures by `factor` [-].
   void scaleViscosity(double factor) noexcept { viscosity_factor_ *= factor; }
-  /// Reduces the preload of the race by `loss` [N], to `least` or the present preload at the lowest.
+  /// Reduces the preload of the race by `loss` [N], at most down to `least` [N]. A preload below `least` stays.
   void reducePreload(double loss, double least) noexcept
   {
     preload_ = std::max(preload_ - loss, std::min(least, preload_));
   }
 
-  /// Magnitude of the friction torque, >= 0 [N.m], at motor speed [rad/s], load [N] and temperature [degC].
+  /// Magnitude of the friction torque, >= 0 [N.m]. `speed`: motor speed [rad/s]; `load`: F [N]; `temperature`: [degC].
   double torque(double speed, double load, double temperature) const noexcept
   {
     return torqueAtViscosity(speed, load, viscosity(temperature));
   }
 
-  /// Friction torque for a known viscosity [m^2/s]. The caller may keep the viscosity while the temperature hardly
-  /// changes, because computing it is expensive.
+  /// Magnitude of the friction torque for a known viscosity [m^2/s]. The computation of the viscosity is expensive, so
+  /// a caller can keep the viscosity while the temperature hardly changes.
   double torqueAtViscosity(double speed, double load, double viscosity) const noexcept
   {
-    constexpr double LOW_SPEED = 2000.0;  // mm^2/s rpm
+    constexpr double LOW_SPEED = 2000.0;  // nu n above which T0 depends on the speed [mm^2/s rpm]
     const double product = 1e6 * viscosity * std::abs(speed) * 60.0 / TWO_PI;
     const double diameter = 1e3 * parameters_.pitch_diameter;
     const double rolling = product < LOW_SPEED ? 160.0 : twoThirdsPower(product);
@@ -204,16 +205,16 @@ public:
       return grease;
     }
     const double root = std::cbrt(grease / parameters_.viscosity);
-    const double friction = constant + (1.0 - constant) * root * root;  // relative to sound grease at T_0
+    const double friction = constant + (1.0 - constant) * root * root;  // (nu / nu(T_0))^(2/3) of sound grease [-]
     return parameters_.viscosity * friction * std::sqrt(friction);
   }
 
-  /// x^(2/3) for finite x > 0 with a relative error of 1e-14, as x times its reciprocal cube root. The root starts with
-  /// a third of the exponent (error 4 %). Two steps of the series of (1 - e)^(-1/3) reduce the error to 2e-6 and to
-  /// rounding.
+  /// x^(2/3) for finite x > 0 with a relative error of 1e-14, as x times its reciprocal cube root. The first guess of
+  /// this root has a third of the exponent (error 4 %). A first step of the series of (1 - e)^(-1/3) reduces the error
+  /// to 2e-6, a second step to rounding.
   static double twoThirdsPower(double x) noexcept
   {
-    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // for this offset a third of the bits of 1 gives the bits of 1
+    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // with it the first guess for 1 is 1
     std::uint64_t bits{};
     std::memcpy(&bits, &x, sizeof(bits));
     bits = ONE - bits / 3;
@@ -233,20 +234,21 @@ private:
   double viscosity_factor_{ 1.0 };
 };
 
-/// Dry friction in parallel to the cup's spring: microscopic slip at the clamping to the housing, and in the steel. It
-/// acts on the mean rotation Phi of the rim, so that it costs nothing at constant load. It opens the torsion loop and
-/// damps the output when the motor is at rest.
+/// Dry friction parallel to the cup's spring, by microscopic slip at the clamping to the housing and in the steel. It
+/// acts on the mean rotation Phi of the rim, so that it dissipates nothing at constant load. It causes the hysteresis
+/// of the torsion and damps the output when the motor is at rest.
 ///
-/// cup.friction_angle = 0: one rigid-plastic element, a dry term of cup.friction_torque F.
-/// Otherwise: ELEMENTS parallel springs, each in series with a slider (Maxwell slip, Masing's model):
+/// For cup.friction_angle = 0 the friction is one rigid-plastic element, a dry term of cup.friction_torque F. For a
+/// larger angle it consists of ELEMENTS parallel springs, each in series with a slider (Maxwell slip, Masing's model):
 ///
-///   torque   sum_j k z_j,   z_j' = Phi' while |z_j| < w_j or Phi' leads back, else 0
-///   stored   sum_j k z_j^2 / 2;   dissipated where an element slips: k w_j per rad
-/// where      w_j = (a / 2) 3^-j, j = 0 ... 5; a the friction angle [rad]; k = F / sum_j w_j [N.m/rad]
+///   torque   sum_j k z_j,   z_j' = Phi' while |z_j| < w_j or Phi' reduces |z_j|, else 0
+///   energy   stored: sum_j k z_j^2 / 2; dissipated by each element that slips: k w_j per rad
+/// where      z_j  twist of spring j [rad], z_j', Phi'  rates; w_j = (a / 2) 3^-j, j = 0 ... 5  its largest twist
+///            a  cup.friction_angle [rad], k = F / sum_j w_j  stiffness of each spring [N.m/rad]
 ///
-/// With equal springs and widths in the ratio 3, the loss is about the same share of the stored energy at amplitudes
-/// from w_5 to w_0, a range of 1 to 243, as in structural damping. The friction does not depend on the rate. After a
-/// reversal all elements slip once the rim has turned by a.
+/// Because the springs are equal and w_j has the ratio 3, the loss is about the same share of the stored energy at all
+/// amplitudes from w_5 to w_0 (1 to 243), as in structural damping. The friction does not depend on the rate. All
+/// elements slip when the rim has turned by a after a reversal.
 class CupFriction
 {
 public:
@@ -269,13 +271,13 @@ public:
     stiffness_ = hasState() ? ELEMENTS * torque_ / widths : 0.0;
   }
 
-  /// Whether the friction is that of springs with sliders, which have a state; otherwise it is one dry term.
+  /// Whether the friction consists of springs with sliders, which have a state, and not of one dry term.
   bool hasState() const noexcept { return torque_ > 0.0 && width_ > 0.0; }
 
-  /// State of springs and sliders, and their torque at `rotation`.
+  /// State of springs and sliders at a rotation of the rim.
   struct State
   {
-    std::array<double, ELEMENTS> twist{};  ///< twist z of each spring [rad]
+    std::array<double, ELEMENTS> twist{};  ///< twist z_j of each spring [rad]
     double rotation{};                     ///< mean rotation Phi of the rim [rad]
     double torque{};                       ///< torque against positive rotation [N.m]
     double stiffness{};                    ///< stiffness of the elements that do not slip [N.m/rad]
@@ -283,7 +285,7 @@ public:
     double slipped{};                      ///< dissipated energy since the preceding state [J]
   };
 
-  /// State with zero torque at a rotation [rad].
+  /// State with zero torque at `rotation` [rad].
   State relaxed(double rotation) const noexcept
   {
     State state;
@@ -292,7 +294,7 @@ public:
     return state;
   }
 
-  /// State after a monotone turn to `rotation` [rad] from the twist and rotation of `from`.
+  /// State after the rim has turned in one direction from the state `from` to `rotation` [rad].
   inline __attribute__((always_inline)) State turned(const State& from, double rotation) const noexcept
   {
     using Elements = Eigen::Array<double, ELEMENTS, 1>;
@@ -310,11 +312,11 @@ public:
     return state;
   }
 
-  /// Largest stiffness, that of all elements before any slips [N.m/rad].
+  /// Stiffness of all elements when none slips, which is the largest stiffness [N.m/rad].
   double stiffness() const noexcept { return stiffness_; }
 
-  /// Adds the term of the rigid-plastic element; `rates`: derivatives of the mean rotation by motor and output angle
-  /// [-]. Adds nothing without friction or if the friction has a state.
+  /// Adds the dry term of the rigid-plastic element to `friction`. `rates`: derivatives of the mean rotation by motor
+  /// and output angle [-]. Adds nothing without friction or if the friction has a state.
   void addTerm(const Eigen::Vector2d& rates, JointFriction& friction) const noexcept
   {
     if (isTerm())
@@ -325,14 +327,14 @@ public:
   bool isTerm() const noexcept { return torque_ > 0.0 && !hasState(); }
 
 private:
-  static constexpr double RATIO = 3.0;  // width of an element over that of the next element
-  // Shares of each element's width in the largest one.
+  static constexpr double RATIO = 3.0;  // largest twist of an element over that of the next element
+  // Largest twist of each element over that of the first element.
   static constexpr std::array<double, ELEMENTS> SHARES{
     1.0, 1.0 / 3.0, 1.0 / 9.0, 1.0 / 27.0, 1.0 / 81.0, 1.0 / 243.0
   };
 
   double torque_;  // torque at which all elements slip [N.m]
-  double width_;   // width of the widest element [rad]
+  double width_;   // largest twist of the first element [rad]
   double stiffness_{};
 };
 }  // namespace hjt

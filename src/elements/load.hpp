@@ -9,7 +9,8 @@ namespace hjt
 {
 /// Load of the output: inertia, friction and gravity (thesis eq. 7.37-7.38 with corrected brackets).
 ///
-/// Energy of gravity:  U = -m g l cos(phi - phi_g), phi_g = angle at which the load hangs straight down. [J]
+/// Energy of gravity:  U = -m g l cos(phi - phi_g) [J], phi output angle, phi_g angle at which the load hangs straight
+/// down, m g l output.gravity_torque
 class Load
 {
 public:
@@ -17,7 +18,7 @@ public:
 
   double inertia() const noexcept { return parameters_.circular_spline_inertia + parameters_.load_inertia; }
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
-  /// Dry friction of bearing and seals, with that of the tilting moment [N.m].
+  /// Dry friction of the output's bearing and seals, with the part by the tilting moment [N.m].
   double dryFriction() const noexcept
   {
     return parameters_.coulomb_torque + parameters_.tilting_friction * parameters_.tilting_moment;
@@ -27,12 +28,12 @@ public:
   {
     return weightless() ? 0.0 : -parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);
   }
-  /// Torque of gravity on the output: minus the derivative of its energy [N.m].
+  /// Torque of gravity on the output: minus the derivative of gravity's energy by the output angle [N.m].
   double gravityTorque(double angle) const noexcept
   {
     return weightless() ? 0.0 : -parameters_.gravity_torque * std::sin(angle - parameters_.gravity_angle);
   }
-  /// Second derivative of gravity's energy [N.m/rad].
+  /// Second derivative of gravity's energy by the output angle [N.m/rad].
   double gravityStiffness(double angle) const noexcept
   {
     return parameters_.gravity_torque * std::cos(angle - parameters_.gravity_angle);

@@ -9,14 +9,16 @@
 
 namespace hjt
 {
-/// Motor with its drive: the torque at the shaft for a commanded torque.
+/// Motor with its amplifier: torque at the shaft for a commanded torque.
 ///
-/// The torque limit clamps the command. Over the last two per cent before the speed limit, accelerating torque
-/// decreases linearly to zero; braking torque does not. The current follows the resulting torque with a first-order
-/// lag.
+/// The torque limit clamps the command. Over the last two per cent before the speed limit, an accelerating torque
+/// decreases linearly to zero, but a braking torque does not. The current follows the resulting torque with a
+/// first-order lag.
 ///
 /// Shaft:   T (1 + r sin 6 p theta) - T_c sin n theta; the second term derives from U = -(T_c / n) cos n theta
-/// where    T    torque of the drive, T_25 (1 + a (temperature - 25 degC)), T_25 = torque at 25 degC  [N.m]
+/// where    theta  motor angle                                                                        [rad]
+///          T    torque without ripple, T_25 (1 + a (temperature - 25 degC)), T_25 = torque at 25 degC [N.m]
+///          a    motor.torque_temperature_coefficient                                                 [1/K]
 ///          r    ripple at six times the electrical frequency, p pairs of poles                       [-]
 ///          T_c  amplitude of the cogging torque, n periods in a turn                                 [N.m]
 class Motor
@@ -24,27 +26,27 @@ class Motor
 public:
   explicit Motor(const MotorParameters& parameters) : parameters_(parameters) {}
 
-  /// The command limited to the torque limit [N.m].
+  /// Commanded torque after the torque limit [N.m].
   double clamped(double command) const noexcept
   {
     return std::clamp(command, -parameters_.torque_limit, parameters_.torque_limit);
   }
 
-  /// Whether the speed limit reduces a torque at a speed.
+  /// Whether the speed limit reduces `torque` at `speed`.
   bool fades(double torque, double speed) const noexcept
   {
     return torque * speed > 0.0 && std::abs(speed) > fadeSpeed();
   }
-  /// speed at which the reduction begins [rad/s]
+  /// speed above which the speed limit reduces the torque [rad/s]
   double fadeSpeed() const noexcept { return (1.0 - FADE) * parameters_.speed_limit; }
   double speedLimit() const noexcept { return parameters_.speed_limit; }  ///< [rad/s]
 
-  /// Accelerating torque at a speed near the limit [N.m]: faded(T, 0) - fadeSlope(T) |speed|, at least zero.
+  /// Reduced accelerating torque at a speed near the speed limit [N.m]: faded(T, 0) - fadeSlope(T) |speed|, at least 0.
   double faded(double torque, double speed) const noexcept
   {
     return torque * std::max(1.0 - std::abs(speed) / parameters_.speed_limit, 0.0) / FADE;
   }
-  double limited(double torque, double speed) const noexcept  ///< torque with the reduction by the speed limit [N.m]
+  double limited(double torque, double speed) const noexcept  ///< torque after the speed limit [N.m]
   {
     return fades(torque, speed) ? faded(torque, speed) : torque;
   }
@@ -53,22 +55,22 @@ public:
     return std::abs(torque) / (FADE * parameters_.speed_limit);
   }
 
-  /// Share of a difference between actual and wanted torque that remains after a time [s].
+  /// Share of a difference between actual and wanted torque that remains after `time` [s] [-].
   double currentLeft(double time) const noexcept
   {
     return parameters_.current_bandwidth > 0.0 ? std::exp(-currentRate() * time) : 0.0;
   }
-  /// inverse time constant; 0: no lag [rad/s]
+  /// inverse time constant of the current's lag; 0: no lag [rad/s]
   double currentRate() const noexcept { return TWO_PI * parameters_.current_bandwidth; }
 
-  /// Torque relative to that of an equal current at 25 degC [-].
+  /// Torque at a temperature over the torque of an equal current at 25 degC [-].
   double torqueFactor(double temperature) const noexcept
   {
     constexpr double REFERENCE = 25.0;  // [degC]
     return 1.0 + parameters_.torque_temperature_coefficient * (temperature - REFERENCE);
   }
 
-  /// Torque of the drive with its ripple at a motor angle [N.m].
+  /// Torque with its ripple at a motor angle [N.m].
   double rippled(double torque, double angle) const noexcept
   {
     return parameters_.torque_ripple == 0.0 ?
@@ -76,7 +78,7 @@ public:
                torque * (1.0 + parameters_.torque_ripple * std::sin(6 * parameters_.pole_pairs * angle));
   }
 
-  /// Energy of cogging [J], its torque [N.m] and its second derivative [N.m/rad].
+  /// Energy of cogging [J], torque of cogging [N.m] and largest second derivative of the energy [N.m/rad].
   double coggingEnergy(double angle) const noexcept
   {
     return cogs() ? -parameters_.cogging_torque / parameters_.cogging_periods *
@@ -90,29 +92,29 @@ public:
   double coggingStiffness() const noexcept { return parameters_.cogging_torque * parameters_.cogging_periods; }
 
   double inertia() const noexcept { return parameters_.rotor_inertia + parameters_.wave_generator_inertia; }
-  /// Dry friction of the motor by speed (Stribeck curve, Gaussian) [N.m].
+  /// Dry friction of the motor at a speed, by a Gaussian Stribeck curve [N.m].
   double dryTorque(double speed) const noexcept { return parameters_.coulomb_torque + stribeckTorque(speed); }
   double stribeckTorque(double speed) const noexcept
   {
     const double relative = speed / parameters_.stribeck_velocity;
     return parameters_.stribeck_torque > 0.0 ? parameters_.stribeck_torque * std::exp(-relative * relative) : 0.0;
   }
-  /// 0: friction holds exactly at rest [rad]
+  /// turn over which the friction at rest builds up; 0: friction holds the shaft exactly [rad]
   double preslidingAngle() const noexcept { return parameters_.presliding_angle; }
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
 
 private:
-  static constexpr double FADE = 0.02;  // share of the speed limit over which the torque decreases
+  static constexpr double FADE = 0.02;  // range in which the torque decreases, over the speed limit [-]
 
   bool cogs() const noexcept { return parameters_.cogging_torque != 0.0; }
 
   MotorParameters parameters_;
 };
 
-/// Brake on the motor's shaft: a pin between the teeth of a star, which slips above a torque.
+/// Brake on the motor's shaft: a pin that engages between the teeth of a star and slips above the holding torque.
 ///
-/// The engaged brake leaves the shaft free within the play b and holds it with the holding torque at either end:
-///   |theta - theta_p| <= b/2, theta_p = middle of the play, which moves when the brake slips    [rad]
+/// The engaged brake leaves the shaft free within the play b. At each end of the play it holds the shaft:
+///   |theta - theta_p| <= b/2, theta  motor angle, theta_p  middle of the play, which moves when the brake slips  [rad]
 /// The brake engages in the middle of the play. Without play it holds at once in both directions.
 class Brake
 {
@@ -128,11 +130,12 @@ public:
   {
     double middle{};  ///< motor angle at the middle of the play [rad]
     double angle{};   ///< motor angle at the preceding update [rad]
-    bool touches{};   ///< whether the shaft touched the pin then
+    bool touches{};   ///< whether the shaft touched the pin at the preceding update
   };
 
-  /// Moves the pin with the shaft. @returns the torque that holds the shaft against its motion in the step around this
-  /// instant [N.m]. `push`: sign of the shaft's motion, or of the torque on a shaft at rest.
+  /// Moves the middle of the play if the brake slips. `angle`: motor angle [rad]; `push`: motor speed, or torque on a
+  /// shaft at rest, of which only the sign counts. @returns the torque that holds the shaft against `push` in the step
+  /// around this instant [N.m].
   double hold(bool engaged, double angle, double push, Pin& pin) const noexcept
   {
     if (!engaged)
@@ -147,13 +150,13 @@ public:
     pin.middle = std::clamp(pin.middle, angle - half_play_, angle + half_play_);
     const bool met = !pin.touches;
     pin.touches = play_left() <= CONTACT * half_play_;
-    // A shaft that has met the pin since the last step is held from that instant until half a step from now.
+    // If the shaft met the pin after the last step, the pin holds the shaft from then until half a step after now.
     const double share = met && half_play_ > 0.0 && moved > beyond ? 0.5 + beyond / moved : 1.0;
     return pin.touches ? share * holding_torque_ : 0.0;
   }
 
 private:
-  // relative rounding error of the play at which the shaft still touches the pin [-]
+  // gap between shaft and pin that counts as rounding, over half the play [-]
   static constexpr double CONTACT = 1e-9;
 
   double holding_torque_;  // [N.m]

@@ -12,7 +12,8 @@ namespace
 {
 using Bump = RaceDeflection::Drop;  // values 0 ... 1
 
-/// Raised cosine of half width `half` at `angle` from its middle; `rate`: derivative of `angle`.
+/// Raised cosine of half width `half` at `angle` from its middle [rad]. `rate`: derivative of `angle` by the wave
+/// generator's angle [-].
 Bump bump(double angle, double rate, double half) noexcept
 {
   const double x = std::remainder(angle, TWO_PI);
@@ -44,7 +45,7 @@ void RaceDeflection::add(const Spall& spall) noexcept
   }
 }
 
-/// Depth by which a ball drops into a spall.
+/// Depth by which a ball drops into a spall of `depth` and `length` [m].
 double RaceDeflection::dropInto(double depth, double length) const noexcept
 {
   return std::min(depth, length * length / (4.0 * ball_diameter_));
@@ -108,10 +109,10 @@ double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const no
   return TWO_PI * ball / balls_ + cage_rate_ * wave_generator_angle;
 }
 
-/// Drop of a ball through one spall.
+/// Drop of a ball into one spall, see RaceDeflection.
 RaceDeflection::Drop RaceDeflection::drop(const Spall& spall, int ball, double angle) const noexcept
 {
-  // [rad], golden angle: turns the balls relative to each other without a pattern
+  // golden angle, by which the rotations of the balls differ so that they have no pattern [rad]
   constexpr double GOLDEN = 2.399963229728653;
   Bump at;
   switch (spall.where)

@@ -10,8 +10,8 @@
 
 namespace hjt
 {
-/// Radius of the bearing's outer race minus that of the rim's bore, both free and round: the fit plus the expansion by
-/// the wave generator's excess temperature; > 0 interference [m].
+/// Radius of the bearing's outer race minus radius of the rim's bore, when both are free and round [m]. This is the fit
+/// plus the expansion of the wave generator, which is hotter than the rim. > 0: the bearing is tight in the rim.
 inline double raceFit(const Parameters& parameters) noexcept
 {
   constexpr double EXPANSION = 11.5e-6;  // coefficient of thermal expansion of steel [1/K]
@@ -19,19 +19,20 @@ inline double raceFit(const Parameters& parameters) noexcept
          EXPANSION * parameters.gear.flexspline_inner_radius * parameters.contact.temperature_difference;
 }
 
-/// Deflection (sag) of the outer race of the wave generator's bearing under the rim because a ball does not carry load.
+/// Deflection (sag) of the outer race of the wave generator's bearing under the rim, where a ball carries no load.
 ///
 /// Ball k:   psi_k = 2 pi k / Z + (1 - s) (1 - d/D)/2 theta     angle of the ball, with the outer race at rest [rad]
-///           phi_k = k GOLDEN - (1 - s) (D/d - d/D)/2 theta     rotation of the ball in the cage; a spot on it meets
-///                                                              the outer race at 0 and the inner race at pi [rad]
-/// Sag:      g_i = sum_k h_k(theta) (1 + cos(Z (psi_i - psi_k) / 2)) / 2  within one ball pitch of psi_i, the angle of
-///                 tooth i at rest; if all balls drop by h, the whole race drops by h                         [m]
-/// where     h_k  drop of ball k: over a spall of depth h the raised cosine h (1 + cos(pi x / b)) / 2, x = distance
-///                from its middle, b = half its length over its radius; at most l^2 / (4 d)    [m]
-///           Z, d, D  number and diameter of the balls, their pitch diameter
-///           s    slip: balls roll on the outer race and slip on the inner race, which drives them
+///           phi_k = k GOLDEN - (1 - s) (D/d - d/D)/2 theta     rotation of the ball in the cage [rad]; a spot on the
+///                                                              ball meets the outer race at 0, the inner race at pi
+/// Sag:      g_i = sum_k h_k(theta) (1 + cos(Z (psi_i - psi_k) / 2)) / 2, over the balls k within one ball pitch of
+///                 psi_i, the angle of tooth i at rest; if all balls drop by h, the whole race drops by h          [m]
+/// where     theta  wave generator angle [rad]; Z, d  number and diameter of the balls; D  pitch diameter [m]
+///           h_k  drop of ball k: for a spall of depth h the raised cosine h (1 + cos(pi x / b)) / 2, x = angle of the
+///                ball from the middle of the spall, b = half the length of the spall as an angle; h is at most
+///                l^2 / (4 d), l = length of the spall                                                             [m]
+///           s    slip: balls roll on the outer race and slip on the inner race, which drives them                 [-]
 ///
-/// In a sound bearing the sag is zero and the contact has the rigid ellipse.
+/// In a sound bearing the sag is zero and the wave generator is a rigid ellipse.
 class RaceDeflection
 {
 public:
@@ -39,40 +40,40 @@ public:
 
   bool sound() const noexcept { return size_ == 0; }
 
-  /// Adds a spall of `depth` and `length` [m]. `place`: angle along the inner race from the wave generator's angle, or
-  /// along the outer race from tooth 0 [rad]; number of the ball from 0. All together are at most MAX_FAULTS.
+  /// Adds a spall of `depth` and `length` [m]. `place`: angle of the spall on the inner race from the major axis, or on
+  /// the outer race from tooth 0 [rad]. `ball`: number of the ball from 0. A bearing has at most MAX_FAULTS faults.
   void addInnerSpall(double place, double depth, double length) noexcept;
   void addOuterSpall(double place, double depth, double length) noexcept;
   void addBallSpall(int ball, double depth, double length) noexcept;
-  /// Adds a ball that carries no load; the race sags by `depth` over it [m].
+  /// Adds a ball that carries no load. The race sags by `depth` over this ball [m].
   void addIdleBall(int ball, double depth) noexcept;
 
-  /// Sag at each tooth, N [m], with its first and second derivative by the wave generator's angle.
+  /// Sag at each tooth [m], with its first and second derivative by the wave generator's angle.
   void at(double wave_generator_angle, Eigen::VectorXd& sag, Eigen::VectorXd& rate,
           Eigen::VectorXd& second) const noexcept;
 
-  /// A value with its derivatives by the wave generator's angle.
+  /// Drop of a ball with its derivatives by the wave generator's angle.
   struct Drop
   {
     double value{};   ///< [m]
     double rate{};    ///< [m/rad]
     double second{};  ///< [m/rad^2]
   };
-  /// Drop of a ball through all its spalls.
+  /// Sum of the drops of a ball by all faults.
   Drop drop(int ball, double wave_generator_angle) const noexcept;
 
-  /// Sag of the race over the drop of a ball, at an angle from the ball [-].
+  /// Sag of the race at `angle` from a ball, divided by the drop of this ball [-].
   static double shareAt(double angle, double ball_pitch) noexcept;
 
   /// Upper bound of the drop of any ball [m].
   double deepest() const noexcept;
-  /// Whether at most one ball drops at a time: there is one defect, shorter than the distance of two balls.
+  /// Whether at most one ball drops at a time, because there is one fault and it is shorter than a ball pitch.
   bool dropsOneBall() const noexcept;
   /// If dropsOneBall or the bearing is sound: the only ball that can drop at the wave generator's angle [rad].
   int ballThatMayDrop(double wave_generator_angle) const noexcept;
 
   int balls() const noexcept { return balls_; }
-  /// Angle of a ball in the housing, beyond one turn too [rad].
+  /// Angle of a ball in the housing, not reduced to one turn [rad].
   double ballPlace(int ball, double wave_generator_angle) const noexcept;
   double cageRate() const noexcept { return cage_rate_; }  ///< speed of the cage over that of the wave generator [-]
 

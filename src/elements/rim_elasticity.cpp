@@ -49,7 +49,7 @@ HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scra
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
-    // The stiffness is k u u^T along the segment, and tension / length across it.
+    // Along the segment the stiffness is that of the spring. Across the segment it is tension / length.
     const double across = stiffness[i] * (length[i] - rest) / length[i];
     const double x = direction[2 * i];
     const double y = direction[2 * i + 1];
@@ -72,7 +72,7 @@ RimBending::RimBending(const Parameters& parameters, const ToothRing& rest)
 {
 }
 
-/// Adds the bending energy and writes the moment at each tooth, stiffness times bending angle, to `scratch`.
+/// Adds the bending energy to `sum` and writes the moment at each tooth, stiffness times bending angle, to `scratch`.
 HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& scratch, ForceSum& sum) const noexcept
 {
   const int n = shape.solved;
@@ -88,7 +88,8 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   }
   else
   {
-    // Direction of each segment if the rim were bent as at rest: that of the preceding segment, turned by a pitch.
+    // The direction that each segment would have if the rim were bent as at rest is the direction of the preceding
+    // segment, turned by a pitch.
     const double c = rest_cos_;
     const double s = rest_sin_;
     const int before = 2 * shape.previous(0);
@@ -116,7 +117,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
     const double angle = turn - natural_angle[i];
     moment[i] = stiffness[i] * angle + race * turn;
     rows[0][k] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
-    // double like the sums, so that the loop vectorises
+    // a double like the sums, so that the compiler vectorises the loop
     rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
   };
   auto [energy, large] = blockSums<2>(0, n, bend);
@@ -168,8 +169,8 @@ void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, Ring
   }
 }
 
-/// Stiffness between the ends of a segment: its couple as the segment turns and, with the absolute law, its bending
-/// stiffness.
+/// Adds the stiffness between the ends of each segment. It comes from the turn of the segment under its couple and,
+/// with the absolute law, from the bending stiffness.
 HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const Scratch& scratch,
                                                   RingTangent& tangent) const noexcept
 {
@@ -203,7 +204,8 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   tangent.addSegments(n);
 }
 
-/// Gradient g of each segment's angle by its far end; with half of the ring solved, also one segment beyond either end.
+/// Gradient g of the angle of each solved segment by the position of its far end. If half of the ring is solved, also
+/// for the segments before and after this half.
 inline void fillGradients(const RingShape& shape, double* __restrict__ gx, double* __restrict__ gy) noexcept
 {
   const int n = shape.solved;
@@ -227,8 +229,9 @@ inline void fillGradients(const RingShape& shape, double* __restrict__ gx, doubl
   }
 }
 
-/// Bending stiffness between neighbouring segments: k times the outer product of the gradient of the bending angle. For
-/// tooth i the gradient is g_i at the next tooth, g_{i-1} at the preceding tooth and minus their sum at tooth i.
+/// Adds the bending stiffness between neighbouring segments: k times the outer product of the gradient of the bending
+/// angle with itself. For the bending angle at tooth i, the gradient by the next tooth is g_i, by the preceding tooth
+/// g_{i-1}, and by tooth i minus their sum.
 HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
   const int n = shape.solved;

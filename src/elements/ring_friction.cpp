@@ -24,7 +24,7 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& fou
     double factor = tooth_factor_[contact.tooth];
     if (rates.shape.copies() > 1)
     {
-      factor += tooth_factor_[contact.tooth + rates.shape.solved];  // the tooth opposite slides alike
+      factor += tooth_factor_[contact.tooth + rates.shape.solved];  // the tooth half a turn away slides equally fast
     }
     friction.flank_load[friction.flanks++] = factor * std::abs(force);
     friction.terms.push_back({ 0.0, slip });
@@ -53,14 +53,14 @@ HJT_VECTOR_CLONES double InterfaceFriction::torque(const RingShape& shape, const
     const double x = point[2 * j] - point[2 * h];
     const double y = point[2 * j + 1] - point[2 * h + 1];
     const double across = y * (rate[2 * j] - rate[2 * h]) - x * (rate[2 * j + 1] - rate[2 * h + 1]);
-    return force[i] * std::abs(across) / (x * x + y * y);  // normal force times the rate at which the chord tilts
+    return force[i] * std::abs(across) / (x * x + y * y);  // normal force times rate of tilt of the chord
   };
   const double ends = lost(shape.previous(0), 0, 1) + lost(n - 2, n - 1, shape.next(n - 1));
   const double sum = ends + blockSum(1, n - 2, [&](int i) { return lost(i - 1, i, i + 1); });
   return coefficient_ * slip_lever_ * shape.copies() * sum;
 }
 
-/// Loss (pi / 2) sum_i |M_i dkappa_i/dtheta| [N.m].
+/// Torque (pi / 2) sum_i |M_i dkappa_i/dtheta| [N.m], see FlexingLoss.
 HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const Eigen::VectorXd& moment,
                                                   const Eigen::VectorXd& rates) noexcept
 {
@@ -73,7 +73,7 @@ HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const 
   {
     const double across =
         direction[2 * i] * (rate[2 * j + 1] - rate[2 * i + 1]) - direction[2 * i + 1] * (rate[2 * j] - rate[2 * i]);
-    return across / length[i];  // rate of the segment from tooth i to tooth j
+    return across / length[i];  // rate of turn of the segment from tooth i to tooth j
   };
   const double ends = std::abs(moments[0] * (turning(0, 1) - turning(n - 1, 0))) +
                       std::abs(moments[n - 1] * (turning(n - 1, 0) - turning(n - 2, n - 1)));
@@ -84,7 +84,7 @@ HJT_VECTOR_CLONES double FlexingLoss::bendingRate(const RingShape& shape, const 
 
 namespace
 {
-/// Speed of the wave generator's surface along a tooth's normal per angular speed [m/rad].
+/// Speed of the wave generator's surface along the contact normal of a tooth, per wave generator speed [m/rad].
 double surfaceLever(const RingShape& shape, const WaveGeneratorContact::Scratch& contact, int i) noexcept
 {
   return shape.points[2 * i] * contact.normal[2 * i + 1] - shape.points[2 * i + 1] * contact.normal[2 * i];
@@ -172,7 +172,7 @@ HJT_VECTOR_CLONES DashpotPower RingDamping::addForces(const RingShape& shape, co
     return direction[2 * i] * (speed[2 * j] - speed[2 * i]) +
            direction[2 * i + 1] * (speed[2 * j + 1] - speed[2 * i + 1]);
   };
-  // Each tooth adds both of its segments, so that no two teeth write to the same entry.
+  // Each tooth adds the forces of its two segments to its own entry, so that no two teeth write to the same entry.
   const auto add_segments = [&](int before, int i, int after)
   {
     const double rate = stretch_rate(i, after);

@@ -16,12 +16,12 @@
 
 namespace hjt
 {
-/// Derivatives of the ring's points by the two angles of the joint.
+/// Derivatives of the tooth points by motor angle and output angle.
 struct RingRates
 {
   const RingShape& shape;
-  const Eigen::VectorXd& by_motor;   ///< 2 N, derivatives by the wave generator angle [m/rad]
-  const Eigen::VectorXd& by_output;  ///< 2 N, derivatives by the output angle [m/rad]
+  const Eigen::VectorXd& by_motor;   ///< derivatives of x and y of each tooth point by the motor angle [m/rad]
+  const Eigen::VectorXd& by_output;  ///< derivatives of x and y of each tooth point by the output angle [m/rad]
 
   /// Derivatives of the rim's mean rotation by motor and output angle [-].
   Eigen::Vector2d meanRotation() const noexcept
@@ -30,8 +30,8 @@ struct RingRates
   }
 };
 
-/// Friction of the tooth flanks: mu |F| against the sliding along the flank. mu decreases from static to kinetic with
-/// the sliding speed (Stribeck curve, Gaussian).
+/// Friction of the tooth flanks: the force mu |F| opposes the sliding along the flank under the normal force F. With
+/// the sliding speed mu decreases from the static to the kinetic coefficient (Gaussian Stribeck curve).
 class MeshFriction
 {
 public:
@@ -49,31 +49,32 @@ public:
     friction_static_ *= factor;
     friction_kinetic_ *= factor;
   }
-  /// N, factor on the friction of each tooth's flanks, which faults change [-].
+  /// factor on the friction of each tooth's flanks, which faults change [-]
   Eigen::VectorXd& toothFactor() noexcept { return tooth_factor_; }
 
-  /// Adds one term for each loaded tooth. `found`: result of the mesh at the same shape; `speeds`: motor and output
-  /// [rad/s], for the Stribeck curve.
+  /// Adds one dry term for each loaded tooth. `found`: result of the mesh at the shape of `rates`; `speeds`: speeds of
+  /// motor and output for the Stribeck curve [rad/s].
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Sets the strengths of the terms that `addTerms` added, from index `first` on, for other speeds.
+  /// Computes the strengths of the terms that `addTerms` added for other speeds. `first`: index of the first of them.
   void setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Friction coefficient [-] of the Stribeck curve at a sliding speed along the flank [m/s].
+  /// Friction coefficient by the Stribeck curve at a sliding speed along the flank [m/s] [-].
   double coefficient(double sliding_speed) const noexcept
   {
     const double relative = sliding_speed / stribeck_velocity_;
     return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
   }
 
-  /// Coefficients for several speeds, an array of fixed size. This is faster; its error is below 3e-4 of the difference
-  /// between static and kinetic friction, because exp(-q) is approximated by (1 + x + x^2/2)^-32 with x = q/32.
+  /// Friction coefficients for an array of sliding speeds. This function approximates exp(-q) of the Stribeck curve by
+  /// (1 + x + x^2/2)^-32 with x = q/32, which is fast. The error is below 3e-4 of the difference between static and
+  /// kinetic coefficient.
   template <class Speeds>
   Speeds coefficients(const Speeds& sliding_speeds) const noexcept
   {
     const double scale = 1.0 / (32.0 * stribeck_velocity_ * stribeck_velocity_);
-    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // beyond 8 the coefficient is the kinetic one
+    const Speeds x = (scale * sliding_speeds.square()).min(8.0);  // for x > 8 the coefficient is the kinetic one
     const Speeds base = 1.0 + x * (1.0 + 0.5 * x);
     return friction_kinetic_ +
            (friction_static_ - friction_kinetic_) / base.square().square().square().square().square();
@@ -88,10 +89,10 @@ private:
 
 /// Friction between the outer race of the wave generator's bearing and the flexspline.
 ///
-/// The race does not slide in the rim but rolls, because mu F r is much larger than the bearing friction. Slip arises
-/// because rim and race bend: their neutral fibres have a distance, the lever, and the slip is the lever times the rate
-/// at which the rim tilts. Taken literally, thesis eq. 7.25-7.28 lets the race slide at motor speed, which gives 74 N.m
-/// for a motor of 2.87 N.m.
+/// The race does not slide in the rim but rolls, because the torque mu F r of full sliding is much larger than the
+/// bearing friction. Slip arises because rim and race bend about neutral fibres at a distance, the lever. The slip is
+/// the lever times the rate at which the rim tilts. By thesis eq. 7.25-7.28 the race would slide at motor speed, with a
+/// torque of 74 N.m against a motor of 2.87 N.m.
 class InterfaceFriction
 {
 public:
@@ -102,8 +103,8 @@ public:
 
   void scale(double factor) noexcept { coefficient_ *= factor; }
 
-  /// Magnitude of the torque at the motor shaft, >= 0 [N.m]. `found`: result of the contact at the same shape; `rates`:
-  /// derivatives of the points by the motor angle [m/rad], while the output turns at the velocity ratio.
+  /// Magnitude of the torque at the motor shaft, >= 0 [N.m]. `found`: result of the contact at `shape`; `rates`:
+  /// derivatives of the tooth points by the motor angle while the output turns at the velocity ratio [m/rad].
   double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                 const Eigen::VectorXd& rates) const noexcept;
 
@@ -112,21 +113,22 @@ private:
   double coefficient_;
 };
 
-/// Hysteresis loss of the rim's steel, which the wave bends cyclically; it does not depend on the speed:
+/// Hysteresis loss of the rim's steel, which the wave bends cyclically. The loss does not depend on the speed:
 ///
 ///   torque at the motor shaft = (pi / 2) eta sum_i |M_i dkappa_i/dtheta|
 /// where  M_i     bending moment at tooth i [N.m]
 ///       kappa_i angle between the segments on either side of the tooth [rad]
 ///       theta   motor angle, while the output turns at the velocity ratio [rad]
-///        eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth
+///       eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth [-]
 ///
-/// Exact for a moment that alternates about zero, as that of the wave does. A constant part counts as alternating too.
+/// The law is exact for a moment that alternates about zero, as the wave's moment does. It treats a constant part of
+/// the moment as alternating too.
 class FlexingLoss
 {
 public:
   explicit FlexingLoss(const RingParameters& parameters) : factor_(parameters.loss_factor) {}
 
-  /// Torque >= 0 [N.m]. `found`: result of the bending at the same shape; `rates`: as for InterfaceFriction.
+  /// Torque at the motor shaft, >= 0 [N.m]. `found`: result of the bending at `shape`; `rates`: see InterfaceFriction.
   double torque(const RingShape& shape, const RimBending::Scratch& found, const Eigen::VectorXd& rates) const noexcept
   {
     return factor_ > 0.0 ? factor_ * bendingRate(shape, found.moment, rates) : 0.0;
@@ -143,16 +145,17 @@ private:
 struct DashpotPower
 {
   double dissipated{};
-  double supplied{};  ///< power that the growing wave generator supplies
+  double supplied{};  ///< power that a wave generator of growing amplitude supplies
 };
 
 /// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33 with corrected signs).
 ///
-/// Force:  c_tooth against the speed of each tooth point, c_tension against the stretching of each segment,
-///         c_contact r'(depth) against the rate of depth of each tooth in the wave generator, r the contact ramp
-/// where   c   [N.s/m], >= 0; r' is 1 in contact and 0 out of it where the ramp has no width
+/// Force:  c_tooth times the speed of each tooth point, c_tension times the rate of stretch of each segment,
+///         c_contact r'(depth) times the rate of the depth of each tooth in the wave generator
+/// where   c_tooth, c_tension, c_contact  damping coefficients, >= 0 [N.s/m]
+///         r  ContactRamp; without a width r' is 1 in contact and 0 out of contact [-]
 ///
-/// The damping matrix is symmetric and positive semi-definite: power = v^T C v.
+/// The damping matrix C is symmetric and positive semi-definite. The dissipated power is v^T C v for the speeds v.
 class RingDamping
 {
 public:
@@ -164,18 +167,18 @@ public:
   {
   }
 
-  using Contact = WaveGeneratorContact::Scratch;  ///< result of the contact at the same shape
+  using Contact = WaveGeneratorContact::Scratch;  ///< result of the contact at the shape of a call
 
-  /// Adds the damping with respect to the joint's two angles, with the ring in equilibrium, to the viscous matrix.
+  /// Adds the damping of a ring in equilibrium, with respect to motor and output angle, to the viscous matrix.
   void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;
 
-  /// Adds the dashpot forces on each coordinate: 2 N of the tooth points, wave generator angle, output angle. `speeds`:
-  /// speeds of these coordinates; `growth`: N, speed of the wave generator's surface along each tooth's normal by its
-  /// growing amplitude [m/s].
+  /// Adds the dashpot forces on each coordinate: x and y of each tooth point, wave generator angle, output angle.
+  /// `speeds`: speeds of these coordinates; `growth`: speed of the wave generator's surface along the contact normal of
+  /// each tooth by the growth of the amplitude [m/s].
   DashpotPower addForces(const RingShape& shape, const Contact& contact, const Eigen::VectorXd& speeds,
                          const Eigen::VectorXd& growth, Eigen::VectorXd& force) const noexcept;
 
-  /// Adds `scale` [1/s] times the damping matrix.
+  /// Adds `scale` [1/s] times the damping matrix to the tangent.
   void addTangent(const RingShape& shape, const Contact& contact, double scale, RingTangent& tangent) const noexcept;
 
 private:

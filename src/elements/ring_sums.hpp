@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// Sum over the elements of the ring: minus the gradient of the stored energy, and the energy.
+/// Stored energy of all elements of the ring, and minus its gradient, the forces.
 struct ForceSum
 {
   explicit ForceSum(int count) : teeth(2 * count), segment(2 * count) {}
@@ -20,7 +20,7 @@ struct ForceSum
     const Eigen::Index size = 2 * solved;
     const double* pull = segment.data();
     double* force = teeth.data();
-    const double sign = size < teeth.size() ? -1.0 : 1.0;  // sign of the last segment's force half a turn away
+    const double sign = size < teeth.size() ? -1.0 : 1.0;  // a force half a turn away has the opposite sign
     force[0] += pull[0] - sign * pull[size - 2];
     force[1] += pull[1] - sign * pull[size - 1];
     for (Eigen::Index k = 2; k < size; ++k)
@@ -29,10 +29,10 @@ struct ForceSum
     }
   }
 
-  /// Extends the sum over the first half of the ring to the whole.
+  /// Extends the sum over the first half of the ring to the whole ring.
   void repeat() noexcept
   {
-    // Forces of the half's end teeth on their neighbours in the other half.
+    // Adds the forces of this half on the neighbouring teeth of the other half at their copies in this half.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();
@@ -52,11 +52,11 @@ struct ForceSum
     energy = 0.0;
   }
 
-  Eigen::VectorXd teeth;           ///< 2 N, forces on the tooth points [N]
+  Eigen::VectorXd teeth;           ///< force on each tooth point, x and y [N]
   double wave_generator_torque{};  ///< torque on the wave generator [N.m]
   double output_torque{};          ///< torque on the circular spline [N.m]
   double energy{};                 ///< stored energy [J]
-  Eigen::VectorXd segment;         ///< 2 N, forces of an element along the rim, before `addSegmentForces` [N]
+  Eigen::VectorXd segment;         ///< force of one element on the start of each segment, x and y [N]
 };
 
 using Block2 = Eigen::Matrix2d;
@@ -87,12 +87,11 @@ struct ToothBlocks
   Eigen::VectorXd yy;
 };
 
-/// Symmetric 2x2 blocks, in the same layout.
+/// A symmetric 2x2 block for each tooth [N/m], with an array for each entry as in ToothBlocks.
 struct SymmetricBlocks
 {
   explicit SymmetricBlocks(int teeth) : xx(teeth), xy(teeth), yy(teeth) {}
 
-  /// Adds a symmetric block.
   void add(int i, const Block2& block) noexcept
   {
     xx[i] += block(0, 0);
@@ -114,8 +113,8 @@ struct SymmetricBlocks
 
 /// Hessian of the stored energy by tooth points, wave generator angle and output angle.
 ///
-/// The part of the teeth is symmetric and cyclic: it couples a tooth with two neighbours on each side, with five 2x2
-/// blocks in a row. The cup adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
+/// The part of the tooth points is symmetric and cyclic. It couples a tooth with two neighbours on each side, so that a
+/// row has five 2x2 blocks. The cup adds `cup_stiffness * cup_direction * cup_direction^T`, which couples all teeth.
 struct RingTangent
 {
   explicit RingTangent(int teeth)
@@ -157,30 +156,30 @@ struct RingTangent
 
   void addDiagonal(int i, const Block2& block) noexcept { diagonal.add(i, block); }
 
-  /// Adds `block` at (i, j) and its transpose at (j, i), with j = i+1 or i+2, cyclic.
+  /// Adds `block` for the teeth (i, j) and its transpose for (j, i), where j is i+1 or i+2, modulo the number of teeth.
   void addPair(int i, int j, const Block2& block) noexcept
   {
     (j == i + 1 || j == i + 1 - teeth() ? next : second).add(i, block);
   }
 
-  /// Adds the blocks of `segment`: springs between teeth i and i+1, for all solved teeth i.
+  /// Adds the blocks of `segment` for all solved teeth i: stiffness of the segment between the teeth i and i+1.
   void addSegments(int solved) noexcept;
 
-  /// Converts the sum over the first half of the ring to the tangent of this half as a closed ring. Its last teeth are
-  /// then coupled to the first ones, which represent the teeth half a turn away with opposite sign.
+  /// Converts the sum over the first half of the ring to the tangent of this half as a closed ring. The last teeth of
+  /// the half are then coupled to its first teeth, which represent the teeth half a turn away with opposite sign.
   void closeHalf() noexcept;
 
   SymmetricBlocks diagonal;       ///< blocks at (i, i)
   ToothBlocks next;               ///< blocks at (i, i+1), cyclic
   ToothBlocks second;             ///< blocks at (i, i+2), cyclic
-  Eigen::VectorXd cup_direction;  ///< 2 N, gradient of the mean rotation [rad/m]
+  Eigen::VectorXd cup_direction;  ///< gradient of the mean rotation by x and y of each tooth point [rad/m]
   double cup_stiffness{};         ///< stiffness of the cup for its mean rotation [N.m/rad]
-  /// 2 N, mixed derivative of the energy by tooth point and wave generator angle [N/rad]
+  /// mixed derivative of the energy by x and y of each tooth point and the wave generator angle [N/rad]
   Eigen::VectorXd wave_generator;
-  Eigen::VectorXd output;             ///< 2 N, mixed derivative of the energy by tooth point and output angle [N/rad]
+  Eigen::VectorXd output;             ///< mixed derivative by x and y of each tooth point and the output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative of the energy by the wave generator angle [N.m/rad]
-  int solved{};                       ///< number of solved teeth: all, or those of the first half
+  int solved{};                       ///< number of solved teeth: all teeth, or those of the first half
   double output_stiffness{};          ///< second derivative of the energy by the output angle [N.m/rad]
-  SymmetricBlocks segment;            ///< tangent of an element between teeth i and i+1, before `addSegments`
+  SymmetricBlocks segment;            ///< stiffness between the teeth i and i+1 by one element, before `addSegments`
 };
 }  // namespace hjt

@@ -11,16 +11,17 @@ namespace hjt
 {
 namespace
 {
-constexpr double OUTSIDE = -1.0;  // [m], depth in a flank if the tip is not in the circular spline
+constexpr double OUTSIDE = -1.0;  // stands for the depth in a flank if the tip is not in the circular spline [m]
 
-/// Position of a tooth in its space, across and along (FlankContact's xi and zeta).
+/// Position of a tooth across and along the axis of its space, as in ToothEngagement [m].
 struct ToothPose
 {
   double xi;
   double zeta;
 };
 
-/// Pose of tooth i between its neighbours h and j, at mid-height. The axis of its space is a unit vector.
+/// Position of tooth i at mid-height. `h`, `j`: its neighbours; `axis_x`, `axis_y`: unit vector of the axis of its
+/// space.
 inline ToothPose poseOf(const double* point, double mid_height, int h, int i, int j, double axis_x,
                         double axis_y) noexcept
 {
@@ -97,7 +98,7 @@ ToothEngagement ToothMesh::engage(const RingShape& shape, double cos_output, dou
            space.along - tooth_along_[i] };
 }
 
-/// Energy and derivatives of a tooth that touches a flank.
+/// Energy of a tooth that touches a flank, and its derivatives.
 FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
 {
   const double xi = tooth.xi + tooth.tooth_ahead;
@@ -137,7 +138,7 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
   return law;
 }
 
-/// Depth of every tooth in the nearer flank. Most teeth that reach the circular spline do not touch.
+/// Computes the depth of every tooth in the nearer flank. This is fast, because most teeth touch no flank.
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
                                               Scratch& scratch) const noexcept
 {
@@ -185,7 +186,7 @@ HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos
   }
 }
 
-/// Depth of a tooth in the nearer flank, measured across.
+/// Depth of a tooth in the nearer flank, measured across the axis of the space [m].
 double ToothMesh::pressedBy(const ToothEngagement& tooth, int i) const noexcept
 {
   const double zeta = tooth.zeta - tooth.space_out;
@@ -227,7 +228,8 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     const ToothEngagement& tooth = contact.place;
     const FlankLaw& at = contact.law;
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
-    // The tooth tilts with the chord, so its couple acts on the two neighbours along the chord's normal.
+    // The tooth tilts with the chord between its neighbours. The couple on the tooth therefore acts on these neighbours
+    // along the normal of the chord.
     const Eigen::Vector2d& normal = tooth.chord.normal;
     const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
     sum.teeth.segment<2>(2 * i) -= gradient;
@@ -252,12 +254,12 @@ void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingT
     const Block2 hessian = at.by_xi_xi * et * et.transpose() + at.by_zeta_zeta * er * er.transpose() +
                            at.by_xi_zeta * (et * er.transpose() + er * et.transpose());
     const Eigen::Vector2d& n = tooth.chord.normal;
-    const Eigen::Vector2d q(-n.y(), n.x());  // along the chord
+    const Eigen::Vector2d q(-n.y(), n.x());  // direction of the chord
     const double lever = mid_height_ / tooth.chord.length;
     const double along = q.dot(gradient);
     const double outward = n.dot(gradient);
 
-    // P = X_i + z n(Q), dn = -q (n . dQ) / |Q|, Q = X_{i+1} - X_{i-1}.
+    // P = X_i + z_t n(Q), dn = -q (n . dQ) / |Q|, Q = X_{i+1} - X_{i-1}; for P, X_i, z_t see ToothMesh.
     const Eigen::Vector2d hq = hessian * q;
     const Block2 mixed = -lever * hq * n.transpose();
     const double by_turn = lever * lever * q.dot(hq) - lever / tooth.chord.length * outward;
@@ -273,7 +275,7 @@ void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingT
     tangent.addPair(h, i, -mixed.transpose());
     tangent.addPair(h, j, -chord);
 
-    // Derivatives by the output angle: d xi = -zeta, d zeta = xi, d e_t = -e_r, d e_r = e_t.
+    // The derivative by the output angle is -zeta for xi, xi for zeta, -er for et, and et for er.
     const double xi_rate = -at.by_xi_xi * tooth.zeta + at.by_xi_zeta * tooth.xi;
     const double zeta_rate = -at.by_xi_zeta * tooth.zeta + at.by_zeta_zeta * tooth.xi;
     const Eigen::Vector2d gradient_rate = (xi_rate + at.by_zeta) * et + (zeta_rate - at.by_xi) * er;
@@ -286,12 +288,12 @@ void ToothMesh::addTangent(const RingShape& shape, const Scratch& scratch, RingT
   }
 }
 
-/// Position of tooth 0 at rest in units of spaces, plus one half for rounding, between 0 and twice their number.
+/// Position of tooth 0 at rest in units of spaces, from 0 to the number of spaces, plus one half for rounding.
 double ToothMesh::firstSpace(double output_angle) const noexcept
 {
   const double turns = output_angle / TWO_PI;
   const double part = turns - std::floor(turns);
-  // A NaN angle has no space. Any space serves, because the forces become NaN too.
+  // For an angle that is NaN any space is right, because the forces become NaN too.
   return 0.5 + spaces_ * (part >= 0.0 && part <= 1.0 ? 1.0 - part : 0.0);
 }
 
@@ -305,8 +307,9 @@ void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) cons
   }
 }
 
-/// Assigns the space nearest to its angle at rest to every tooth whose tip cannot reach the circular spline, whatever
-/// its tilt. @returns the number of other teeth that are outside their space.
+/// Assigns the space nearest to the angle at rest to every tooth whose tip cannot reach the circular spline at any
+/// tilt.
+/// @returns the number of other teeth that are outside their space.
 HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
@@ -328,7 +331,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
-    int rest = static_cast<int>(first + i * spaces_a_tooth);  // less than three times the number of spaces
+    int rest = static_cast<int>(first + i * spaces_a_tooth);  // is less than 3 spaces
     rest -= rest >= spaces ? spaces : 0;
     rest -= rest >= spaces ? spaces : 0;
     space[i] = reaches ? space[i] : rest;
@@ -354,8 +357,8 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
   return jumps * shape.copies();
 }
 
-/// Assigns a space to every tooth that is out of contact and outside its space. @returns as `pairNearest`, for the
-/// solved teeth.
+/// Assigns the nearest space to every tooth that touches no flank and is outside its space. @returns the number that
+/// `pairNearest` returns, for the solved teeth only.
 int ToothMesh::pairInReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   int jumps = 0;

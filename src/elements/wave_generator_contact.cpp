@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// Approximate foot of the thesis, in the axes of the ellipse.
+/// Foot of the normal by the approximation of the thesis, in the axes of the ellipse.
 EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
 {
   const double radius = std::sqrt(x * x + y * y);
@@ -26,7 +26,7 @@ EllipseFoot polarPoint(double a, double b, double x, double y) noexcept
   return foot;
 }
 
-/// Support stiffness of each tooth, see WaveGeneratorContact.
+/// Stiffness k_i of the support of each tooth, see WaveGeneratorContact.
 double supportStiffness(const Parameters& parameters) noexcept
 {
   return parameters.contact.support == SupportKind::SPRINGS ?
@@ -88,7 +88,7 @@ void SingleBalls::addTangent(const RaceDeflection& bearing, const RingShape& sha
     {
       continue;
     }
-    std::array<Eigen::Vector2d, 3> push;  // derivative of minus the depth by each tooth point [-]
+    std::array<Eigen::Vector2d, 3> push;  // minus the derivative of the depth by each tooth point [-]
     double by_angle = -ball.drop.rate;
     double by_angle_twice = -ball.drop.second;
     for (std::size_t k = 0; k < 3; ++k)
@@ -167,7 +167,7 @@ Eigen::Vector2d WaveGeneratorContact::centre(const DrivePosition& position) cons
   return { c * centre_x_ - s * centre_y_, s * centre_x_ + c * centre_y_ };
 }
 
-/// Feet of the normals from all tooth points, in the axes of the housing.
+/// Computes the foot of the normal from each tooth point to the ellipse, in the axes of the housing.
 HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, const DrivePosition& position,
                                                       Scratch& scratch) const noexcept
 {
@@ -200,7 +200,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
     }
     return;
   }
-  double far = 0.0;  // number of far teeth; double, so that the loop vectorises
+  double far = 0.0;  // number of far teeth; a double, so that the compiler vectorises the loop
 #pragma omp simd reduction(+ : far)
   for (int i = 0; i < n; ++i)
   {
@@ -218,18 +218,18 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
   }
 }
 
-/// Adds the sag of the faulty bearing to the gap, in `scratch`.
+/// Writes the sum of gap and sag of the faulty bearing, with its derivatives, to `scratch`.
 void WaveGeneratorContact::addSag(const DrivePosition& position, Scratch& scratch) const noexcept
 {
   bearing_.at(position.wave_generator_angle, scratch.gap, scratch.gap_rate, scratch.gap_second);
   scratch.gap += gap_;
 }
 
-/// Forces of each solved tooth on its spring or its share of the balls. @returns the energy [J].
+/// Computes the force of each solved tooth on its spring or its share of the balls. @returns the energy [J].
 HJT_VECTOR_CLONES double WaveGeneratorContact::press(int solved, Scratch& scratch) const noexcept
 {
   const double smoothing = smoothing_;
-  // Without inlining it would be compiled for the baseline processor only.
+  // A lambda that is not inlined would be compiled for the baseline processor only.
   const auto press_by = [&](const auto& law) __attribute__((always_inline))
   {
     const double* __restrict__ stiffness = stiffness_.data();
@@ -294,7 +294,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
   sum.wave_generator_torque += torque;
 }
 
-/// A tooth out of contact has no force and no stiffness and adds nothing.
+/// A tooth out of contact adds nothing, because its force and stiffness are zero.
 HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const Scratch& scratch,
                                                         RingTangent& tangent) const noexcept
 {
@@ -318,7 +318,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double ny = normal[2 * i + 1];
     const double force = contact_force[i];
     const double stiffness = slope[i];
-    // The normal, and with it the force, turns with the point at this rate.
+    // rate of turn of the normal, and of the force with it, per motion of the tooth point along the surface [rad/m]
     const double turn = curvature[i] / (1.0 - curvature[i] * (depth[i] + gap[i]));
     const double across = -force * turn;
     xx[i] += stiffness * nx * nx + across * ny * ny;
@@ -370,7 +370,7 @@ void WaveGeneratorContact::surfaceByAmplitude(const DrivePosition& position, con
     {
       const double nx = c * scratch.normal[2 * i] + s * scratch.normal[2 * i + 1];
       const double ny = c * scratch.normal[2 * i + 1] - s * scratch.normal[2 * i];
-      // The point on the surface is (a u, b v) with a unit vector (u, v). With the amplitude it moves by (u, -v).
+      // The point on the surface is (a u, b v) with a unit vector (u, v). Its derivative by the amplitude is (u, -v).
       const double u = law_ == ContactLaw::POLAR ? a * a * nx : a * nx;
       const double v = law_ == ContactLaw::POLAR ? b * b * ny : b * ny;
       rates[i] = (u * nx - v * ny) / std::sqrt(u * u + v * v);
