@@ -15,18 +15,19 @@ namespace hjt
 {
 namespace
 {
-constexpr int LINES = 48;         // intervals of w
-constexpr int COLUMNS = 8;        // of u in a pitch
-constexpr int PLACES = 80;        // of chi in half a turn
-constexpr double SCALE = 1e-3;    // scale of v: lines are equidistant below it and geometric above [rad]
-constexpr double LONGEST = 1e-3;  // largest single step of v [rad]
+constexpr int LINES = 48;         // number of intervals of w
+constexpr int COLUMNS = 8;        // number of intervals of u in a pitch
+constexpr int PLACES = 80;        // number of intervals of chi in half a turn
+constexpr double SCALE = 1e-3;    // scale of v: for |v| below it lines are equidistant, above it geometric [rad]
+constexpr double LONGEST = 1e-3;  // largest change of v between two solves [rad]
 
 using Coefficients = BallTable::Coefficients;
 
-/// Coefficients of the cubic spline through values on an even periodic grid.
+/// Replaces values on an even periodic grid by the coefficients of the cubic spline through them.
 void makeRoundSpline(std::vector<Coefficients>& values)
 {
-  // (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]. The inverse is a sum of powers of the pole in both directions.
+  // The coefficients solve (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]. The solution is a sum over the values before and
+  // after i, weighted by powers of the pole.
   const double pole = std::sqrt(3.0) - 2.0;
   const std::size_t count = values.size();
   const double closed = 1.0 / (1.0 - std::pow(pole, static_cast<double>(count)));
@@ -35,7 +36,7 @@ void makeRoundSpline(std::vector<Coefficients>& values)
   {
     sum = values[i] + pole * sum;
   }
-  sum *= closed;  // sum over all values before the first
+  sum *= closed;  // sum over all periods before the first value
   for (Coefficients& value : values)
   {
     sum = value + pole * sum;
@@ -54,11 +55,11 @@ void makeRoundSpline(std::vector<Coefficients>& values)
   }
 }
 
-/// Coefficients of the spline without curvature at its ends; there are two more than values.
+/// Coefficients of the spline through `values` without curvature at its ends: two more coefficients than values.
 std::vector<Coefficients> naturalSpline(const std::vector<Coefficients>& values)
 {
   const std::size_t last = values.size() - 1;
-  std::vector<Coefficients> inner = values;  // the coefficients at the ends equal the values
+  std::vector<Coefficients> inner = values;  // here the coefficients at the ends equal the values
   std::vector<double> factor(values.size());
   for (std::size_t i = 1; i < last; ++i)
   {
@@ -80,7 +81,7 @@ std::vector<Coefficients> naturalSpline(const std::vector<Coefficients>& values)
   return all;
 }
 
-/// One line of the table, with a ring that starts from a new insertion.
+/// One line of the BallTable, measured with a newly inserted ring.
 class BallLine
 {
 public:
@@ -94,7 +95,8 @@ public:
   {
   }
 
-  /// `values`: by column, then by place. @returns false without an equilibrium.
+  /// Measures the line at `v`. `values` receives the results by column, then by place. @returns false if the ring has
+  /// no equilibrium.
   bool measure(double v, int columns, int places, std::vector<Coefficients>& values)
   {
     bool good = ring_.insert();
@@ -118,7 +120,7 @@ public:
         }
         const double by_drop = -deepest_ * force.dot(share_);
         values.emplace_back(Coefficients::Zero());
-        // Only a ball that carries no load may drop without effect.
+        // A ball that carries no load drops without effect.
         good = by_drop == 0.0 || measureBall(angle, v, sound, by_drop, values.back());
       }
     }
@@ -131,7 +133,7 @@ private:
     double energy, by_drop, contact_force, flanks;
   };
 
-  /// Sample of the ring at its present position. `by_drop` must belong to the present `share_`.
+  /// Values of the ring at its present position, with the derivative of the energy for the present `share_`.
   Sample sample()
   {
     const SurfaceNode node = ring_.measure();
@@ -139,14 +141,15 @@ private:
              ring_.flankFriction(node) };
   }
 
-  /// Solves with the ball dropped by `part` of the largest drop.
+  /// Solves with the ball dropped by `part` of the largest drop. @returns false without an equilibrium.
   bool dropTo(double part, double angle, double v)
   {
     ring_.editModel().ring.edit<WaveGeneratorContact>().gap() = sound_gap_ + part * deepest_ * share_;
     return ring_.moveTo(angle, v);
   }
 
-  /// `c1`: derivative of the sound gear's energy by x [J].
+  /// Computes the coefficients for one ball from the ring at two drops. `c1`: derivative of the energy by x at the drop
+  /// 0 [J]. @returns false without an equilibrium.
   bool measureBall(double angle, double v, const Sample& sound, double c1, Coefficients& coefficients)
   {
     if (!dropTo(0.5, angle, v))
@@ -159,7 +162,8 @@ private:
       return false;
     }
     const Sample whole = sample();
-    // U = c1 x + c2 x^2 + c3 x^3 + c4 x^4, from its slopes at 0 and 1 and its values at 1/2 and 1.
+    // The change of the energy c1 x + c2 x^2 + c3 x^3 + c4 x^4 has the measured slopes at x = 0 and 1, and the measured
+    // values at x = 1/2 and 1.
     const double at_half = 16.0 * (half.energy - sound.energy - 0.5 * c1);
     const double at_whole = whole.energy - sound.energy - c1;
     const double c2 = at_half - 5.0 * at_whole + whole.by_drop - c1;
@@ -182,7 +186,7 @@ private:
   double deepest_;
   double turn_;
   double ball_pitch_;
-  Eigen::VectorXd share_;  // sag of the race over each tooth as a share of the drop
+  Eigen::VectorXd share_;  // sag of the race at each tooth over the drop of the ball [-]
 };
 using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 
@@ -205,7 +209,7 @@ BallTable emptyTable(const Parameters& parameters, const JointModel& sound, doub
   return table;
 }
 
-/// @returns false if a ring has no equilibrium.
+/// Measures all lines of `table` on several threads. @returns false if a ring has no equilibrium.
 bool measureLines(const Parameters& parameters, const JointModel& sound, const BallTable& table,
                   const std::function<void(double)>& progress, unsigned threads, Lines& lines)
 {
@@ -232,7 +236,7 @@ bool measureLines(const Parameters& parameters, const JointModel& sound, const B
   return !failed;
 }
 
-/// Splines along both periodic directions of a line.
+/// Replaces the values of a line by the coefficients of splines along u and chi.
 void makeSplines(std::size_t columns, std::size_t places, std::vector<Coefficients>& line)
 {
   for (std::size_t j = 0; j < columns; ++j)
@@ -286,7 +290,7 @@ BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, 
   Lines lines;
   if (!measureLines(parameters, sound, result.table, progress, threads, lines))
   {
-    result.failure_reason = "the ring has no equilibrium at a drop of a ball";
+    result.failure_reason = "the ring has no equilibrium when a ball drops";
     return result;
   }
   for (std::vector<Coefficients>& line : lines)

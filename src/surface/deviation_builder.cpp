@@ -21,7 +21,7 @@ namespace hjt
 {
 namespace
 {
-/// A pitch whose edges are not yet joined to its neighbours.
+/// Table of a tooth pitch whose edges are not yet joined to those of its neighbours.
 struct OpenPitch
 {
   int columns{};
@@ -32,7 +32,7 @@ struct OpenPitch
 void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
 {
   const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
-  std::size_t kept = 0;  // last line of both
+  std::size_t kept = 0;  // index of the last line in `common` so far
   for (std::size_t i = 0, in_common = 0; i < pitch.lines.size(); ++i)
   {
     if (in_common == common.size() || pitch.lines[i] != common[in_common])
@@ -62,8 +62,8 @@ void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& 
   }
 }
 
-/// Makes the end of a pitch and the start of the next one equal functions of v. A line that only one pitch has gets
-/// values interpolated between the lines that both have.
+/// Makes the end of a pitch and the start of the next pitch equal functions of v. On lines that only one of the pitches
+/// has, the values at this edge are interpolated between the lines that the pitches have in common.
 void joinPitches(OpenPitch& before, OpenPitch& after)
 {
   std::vector<double> common;
@@ -77,7 +77,7 @@ void joinPitches(OpenPitch& before, OpenPitch& after)
   levelEdge(after, 0, common);
 }
 
-/// The table of all pitches; the last pitch is joined to the first.
+/// Joins all pitches to a table. The last pitch is joined to the first pitch.
 DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
 {
   for (std::size_t number = 0; number < pitches.size(); ++number)
@@ -93,13 +93,13 @@ DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
   return table;
 }
 
-/// Check of a grid of deviations against the ring between its nodes.
+/// Comparison of a grid of deviations with the ring between the nodes of the grid.
 class DeviationCheck
 {
 public:
-  using Torques = Eigen::Array2d;  ///< on output and motor [N.m]
+  using Torques = Eigen::Array2d;  ///< torques on output and motor [N.m]
 
-  /// `ring` gives the limits and is not solved.
+  /// `ring`: gives the torque limits and is not solved.
   explicit DeviationCheck(const SurfaceRing& ring) : ring_(ring) {}
 
   Torques torques(const SurfaceNode& deviation) const
@@ -109,13 +109,13 @@ public:
 
   bool departs(const SurfaceNode& node) const
   {
-    constexpr double ROUNDING = 1e-8;  // share of the torque limit; the rings are solved to a tenth of it
+    constexpr double ROUNDING = 1e-8;  // largest deviation by rounding, as a share of the torque limit [-]
     const Torques torque = torques(node).abs();
     return std::max(torque[0], torque[1] * ring_.ratio()) > ROUNDING * ring_.torqueLimit();
   }
 
-  /// Interpolation error of a strip of nodes if only `columns` intervals of it are kept: root mean square at the
-  /// omitted nodes, as a share of the tolerance [-].
+  /// Interpolation error if only the nodes at the ends of `columns` equal intervals of a strip are kept: root mean
+  /// square over the other nodes, divided by the tolerance [-].
   double missOfColumns(const Strip& strip, int columns, const Torques& tolerance) const
   {
     const std::size_t stride = (strip.size() - 1) / static_cast<std::size_t>(columns);
@@ -133,8 +133,9 @@ public:
     return largest(squares / (static_cast<double>(columns) * (static_cast<double>(stride) - 1.0)), tolerance);
   }
 
-  /// Miss of two lines' strips of a pitch, `height` apart [rad], at the line halfway between them: root mean square
-  /// over the tolerance [-]. No grid resolves single kinks where a tooth begins to touch.
+  /// Interpolation error between two strips at the strip `middle` halfway between them: root mean square divided by the
+  /// tolerance [-]. `height`: difference of v between the two strips [rad]. The mean is taken because no grid resolves
+  /// the single kinks where a tooth begins to touch.
   double missBetween(const Strip& below, const Strip& above, double height, const Strip& middle,
                      const Torques& tolerance) const
   {
@@ -156,7 +157,7 @@ private:
 
   Torques torques(double by_u, double by_v) const { return { -by_v, by_v / ring_.ratio() - by_u / ring_.pitch() }; }
 
-  /// Difference between a cell's value and the measured deviation.
+  /// Torques of a cell minus the measured torques [N.m].
   Torques miss(const SurfaceCell& cell, const SurfaceNode& measured) const
   {
     const SurfaceEnergy energy = cell.energy();
@@ -168,23 +169,22 @@ private:
 
 using Node = SurfaceNode;
 using Line = DeviationLine;
-using Lines = std::map<double, Line>;  // key: v [rad]
+using Lines = std::map<double, Line>;  // lines by their v [rad]
 using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
-constexpr double SMALLEST = 0.1;  // least share of a line's largest deviation in the largest of all lines [-]
+constexpr double SMALLEST = 0.1;  // lines with a smaller share of the largest deviation count as having this share [-]
 constexpr double FINEST = 0.3;    // least tolerance of a deviation, as a share of the surface's tolerance [-]
-// largest factor by which the surface's tolerance may increase a deviation's tolerance [-]
-constexpr double WIDEST = 3.0;
-// coarse lines on either side of no load, before refinement; they are denser near no load
-constexpr int COARSE_LINES = 12;
-constexpr int MAX_HALVINGS = 5;       // largest number of halvings of an interval between two lines
+constexpr double WIDEST = 3.0;    // largest factor by which FINEST may increase the tolerance of a deviation [-]
+constexpr int COARSE_LINES = 12;  // number of lines on each side of no load before refinement; denser near no load
+constexpr int MAX_HALVINGS = 5;   // largest number of halvings of an interval between two lines
 constexpr double SAME_TORQUE = 1e-7;  // largest difference of equal torques, as a share of the torque limit [-]
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
 
-/// Every coarse line, and every interval between two of them, is a separate task that begins with newly inserted rings.
-/// The bits of a table therefore do not depend on the number of threads.
+/// Builder of a DeviationTable. Every coarse line (line before refinement), and every interval between two coarse
+/// lines, is a separate task that begins with newly inserted rings. The bits of a table therefore do not depend on the
+/// number of threads.
 class DeviationBuilder
 {
 public:
@@ -219,8 +219,8 @@ public:
     }
     if (failed_)
     {
-      result.failure_reason = too_many_ ? tooManyPoints(parameters_, max_points_) :
-                                          "the ring has no equilibrium at some angles within a turn";
+      result.failure_reason =
+          too_many_ ? tooManyPoints(parameters_, max_points_) : "the ring has no equilibrium at some angles of a turn";
     }
     else
     {
@@ -232,12 +232,12 @@ public:
   }
 
 private:
-  using Set = std::vector<char>;  // flags of the wanted pitches
+  using Set = std::vector<char>;  // for each pitch, whether it is in the set
 
   std::size_t next(std::size_t pitch) const { return pitch + 1 < pitches_ ? pitch + 1 : 0; }
   std::size_t last(std::size_t pitch) const { return pitch > 0 ? pitch - 1 : pitches_ - 1; }
 
-  /// Number of points of a line's strips.
+  /// Number of points of a line in the wanted pitches.
   std::size_t pointsOf(const Set& wanted) const
   {
     std::size_t points = 0;
@@ -248,8 +248,9 @@ private:
     return points;
   }
 
-  /// Measures the deviations on a line for some pitches: first at their edges, then, on the way back, within pitches
-  /// that have deviations or a neighbour with deviations. @returns false and ends everything without an equilibrium.
+  /// Measures the deviations on the line at `v` for the wanted pitches: first at their edges, then, on the way back,
+  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks if a ring
+  /// has no equilibrium.
   bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const bool there = !failed_ && rings.leadTo(v, longest_way_);
@@ -273,7 +274,7 @@ private:
       }
       return node;
     };
-    std::vector<Node> edges(pitches_);  // at the start of each pitch
+    std::vector<Node> edges(pitches_);  // deviations at the start of each pitch
     for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
       if (wanted[last(last(pitch))] || wanted[last(pitch)] || wanted[pitch] || wanted[next(pitch)])
@@ -314,7 +315,7 @@ private:
     return good;
   }
 
-  /// Measures a line and adds it to the table, if there is room.
+  /// Measures a line if the table has room for it.
   bool addLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const std::size_t size = pointsOf(wanted) * (mirror_ ? 2 : 1);
@@ -326,15 +327,15 @@ private:
     return measureLine(rings, v, wanted, line);
   }
 
-  /// Tolerance on a line by its largest deviation and that of the coarse lines. It is wider for a deviation that is
-  /// small compared with the surface's own tolerance.
+  /// Tolerance of the torques on a line, which follows from the largest deviation on the line and on the coarse lines.
+  /// The tolerance is wider if the deviation is small compared with the surface's tolerance.
   Torques toleranceOf(const Line& line) const
   {
     const Torques own = line.overload * share_ * line.largest.max(SMALLEST * largest_);
     return own.max((FINEST * line.of_the_surface).min(WIDEST * own));
   }
 
-  /// Chooses for each pitch the fewest columns that resolve the deviations halfway between them.
+  /// Chooses for each pitch the least number of columns that meets the tolerance between the columns.
   void chooseColumns(double lowest, double highest)
   {
     const std::array<double, 6> places{ 0.02 * highest, 0.1 * highest, 0.3 * highest,
@@ -376,7 +377,7 @@ private:
         note(line, miss());
       }
     }
-    // With the load, the effect may move to the next pitch.
+    // Under load the deviations of a pitch can move to the next pitch.
     for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });
@@ -389,7 +390,7 @@ private:
     }
   }
 
-  /// Measures the coarse lines, denser near no load; one direction only if the other is its mirror image.
+  /// Measures the coarse lines, which are denser near no load. If there is a mirror, measures only those of v >= 0.
   void coverRange(double lowest, double highest)
   {
     for (int i = mirror_ ? 0 : -COARSE_LINES; i <= COARSE_LINES; ++i)
@@ -441,8 +442,8 @@ private:
     const Line& line;
   };
 
-  /// Measures a line between two others for the pitches `wanted`, and further lines where the check shows too coarse a
-  /// grid.
+  /// Measures the line halfway between two lines for the pitches `wanted`, and more lines where the grid misses its
+  /// tolerance.
   void refine(Rings& rings, const Placed& below, const Placed& above, const Set& wanted, int halvings, Lines& found)
   {
     const double middle = 0.5 * (below.v + above.v);
@@ -475,7 +476,7 @@ private:
     }
   }
 
-  /// Stores a check. Beyond the torque limit teeth may snap, so that no accuracy is claimed.
+  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap there.
   void note(const Line& line, double miss)
   {
     if (line.overload == 1.0)
@@ -513,7 +514,7 @@ private:
 
   bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
 
-  /// Runs the tasks with these numbers, the second one excluded.
+  /// Runs the tasks from numbers.first to numbers.second - 1. `from`, `to`: progress before and after them, 0 ... 1.
   void run(std::pair<std::size_t, std::size_t> numbers, double from, double to,
            const std::function<void(Rings&, std::size_t)>& task)
   {
@@ -544,21 +545,21 @@ private:
   std::function<void(double)> progress_;
   std::size_t max_points_;
   unsigned threads_;
-  const SurfaceRing ring_;  // gives limits and tolerances and is not solved
+  const SurfaceRing ring_;  // gives limits and tolerances, is not solved
   const DeviationCheck check_;
   std::size_t pitches_;
-  std::vector<int> columns_;    // columns of each pitch
+  std::vector<int> columns_;    // number of columns of each pitch
   std::vector<double> coarse_;  // v of the coarse lines, ascending
   Lines lines_;
   std::optional<DeviationMirror> mirror_;  // if set, only lines of v >= 0 are measured
-  const Torques share_{ 5e-3, 7e-3 };      // allowed miss as a share of the largest deviation on a line [-]
-  Torques largest_{ Torques::Zero() };     // largest deviations of the coarse lines
+  const Torques share_{ 5e-3, 7e-3 };      // tolerance as a share of the largest deviation on a line [-]
+  Torques largest_{ Torques::Zero() };     // largest deviations on the coarse lines [N.m]
   double longest_way_{};                   // largest change of v between two solves [rad]
   std::atomic<std::size_t> points_{ 0 };   // points of all lines
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };
-  std::mutex mutex_;  // protects the checks
+  std::mutex mutex_;  // protects checks_
   GridChecks checks_;
 };
 }  // namespace

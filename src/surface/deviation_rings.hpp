@@ -14,20 +14,21 @@
 
 namespace hjt
 {
-/// Nodes of one tooth pitch on one line, both ends included.
+/// Nodes of one tooth pitch on one line, with those at both ends of the pitch.
 using Strip = std::vector<SurfaceNode>;
 
-/// Deviations from the gear with equal teeth on one line.
+/// Deviations of a gear from the gear with equal teeth, on one line.
 struct DeviationLine
 {
-  std::vector<Strip> strips;                         ///< one for each pitch; empty where the line is not needed
+  std::vector<Strip> strips;                         ///< strip of each pitch; empty if the pitch does not need the line
   Eigen::Array2d largest{ Eigen::Array2d::Zero() };  ///< largest deviations of the torques on output and motor [N.m]
-  double overload{};                                 ///< factor by which the tolerances are wider [-]
-  Eigen::Array2d of_the_surface{ Eigen::Array2d::Zero() };  ///< tolerances of the gear with equal teeth [N.m]
+  double overload{};                                 ///< see SurfaceRing::overload [-]
+  Eigen::Array2d of_the_surface{ Eigen::Array2d::Zero() };  ///< tolerances of the surface's torques [N.m]
 };
 
-/// A ring with equal teeth and the gear's own ring. The guess of the latter's shape is the former's shape at the
-/// present angles plus their difference at the preceding node, because the difference changes less than either shape.
+/// A ring with equal teeth (`equal`) and the ring of the gear (`actual`). The guess of the shape of `actual` is the
+/// shape of `equal` at the same angles plus the difference of their shapes at the preceding node, because this
+/// difference changes less than each shape.
 struct DeviationRings
 {
   DeviationRings(const SurfaceParameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
@@ -52,7 +53,7 @@ struct DeviationRings
     return good;
   }
 
-  /// Measures the gear with equal teeth at these columns. Empty: no equilibrium.
+  /// Measures the ring with equal teeth at `columns` nodes of a pitch. Empty: the ring has no equilibrium.
   Strip measureEqual(int columns)
   {
     Strip nodes;
@@ -69,10 +70,11 @@ struct DeviationRings
     return nodes;
   }
 
-  /// Measures the gear's own ring at one of the last columns of `measureEqual`. @returns false without an equilibrium.
+  /// Measures the ring of the gear at a column of the last call of `measureEqual`. @returns false without an
+  /// equilibrium.
   bool measureActual(std::size_t pitch, std::size_t column, SurfaceNode& node)
   {
-    constexpr double NEAR = 0.6;  // share of a pitch
+    constexpr double NEAR = 0.6;  // largest turn over which a difference of shapes serves as a guess [pitches]
     const double turned = equal.pitch() * static_cast<double>(pitch);
     const int places = static_cast<int>(pitch) % static_cast<int>(shapes_[column].points.size() / 2);
     const double angle = turned + equal.pitch() * static_cast<double>(column) / static_cast<double>(shapes_.size());
@@ -99,7 +101,7 @@ private:
   struct Shape
   {
     Eigen::VectorXd points;  // tooth points [m]
-    Eigen::VectorXd rates;   // derivatives by the motor's angle at constant v [m/rad]
+    Eigen::VectorXd rates;   // derivatives of the tooth points by the motor angle at constant v [m/rad]
   };
   std::vector<Shape> shapes_;  // shapes of the ring with equal teeth, one for each column
   Shape base_{ equal.points(), equal.points() };
@@ -107,19 +109,19 @@ private:
   bool departure_known_{ false };
 };
 
-/// Symmetry of deviations: the energy at x pitches and v equals that at (centre - x) and -v. It exists for a fault with
-/// mirror symmetry in a gear of equal teeth with mirror symmetry.
+/// Mirror symmetry of deviations: the energy at the motor angle x [pitches] and v equals the energy at centre - x and
+/// -v. The symmetry exists for a fault with mirror symmetry in a gear that has mirror symmetry and, else, equal teeth.
 class DeviationMirror
 {
 public:
-  /// Torques that count as equal, as slopes of the energy by u and v [J], [J/rad].
+  /// Largest differences of slopes of the energy that count as equal, by u [J] and by v [J/rad].
   struct Same
   {
     double by_u, by_v;
   };
 
-  /// Finds the symmetry from two lines at opposite v, measured at all pitches with equal columns. `swaps_lobes`: after
-  /// the last pitch the lobes have exchanged their places.
+  /// Finds the symmetry from two lines at opposite v with all pitches, which have equal numbers of columns.
+  /// `swaps_lobes`: whether the lobes have exchanged their places after the last pitch.
   static std::optional<DeviationMirror> find(const DeviationLine& line, const DeviationLine& opposite, bool swaps_lobes,
                                              const Same& same)
   {
@@ -134,10 +136,10 @@ public:
     return std::nullopt;
   }
 
-  /// The pitch of which a pitch is the mirror image.
+  /// Pitch whose mirror image is `pitch`.
   std::size_t imageOf(std::size_t pitch) const noexcept { return (centre_ + 2 * pitches_ - 1 - pitch) % pitches_; }
 
-  /// The line at the opposite v, by the symmetry.
+  /// Mirror image of a line: the line at the opposite v.
   DeviationLine image(const DeviationLine& line) const
   {
     DeviationLine image = line;
@@ -172,11 +174,11 @@ private:
     return node;
   }
 
-  /// Compares the torques at every node, and means of friction and lobe forces, whose rates jump where a tooth begins
-  /// to touch.
+  /// Whether the mirror image of `line` is `opposite`. Compares the torques at every node. Compares means of friction
+  /// and lobe forces, because their rates jump where a tooth begins to touch.
   bool gives(const DeviationLine& line, const DeviationLine& opposite, const Same& same) const
   {
-    // largest difference of equal friction, as a share of the mean deviation [-]
+    // largest mean difference of equal values, as a share of their mean [-]
     constexpr double SAME_FRICTION = 0.01;
     constexpr std::array VALUES{ SurfaceNode::CONTACT_FORCE, SurfaceNode::RING_TORQUE, SurfaceNode::VISCOUS,
                                  SurfaceNode::OUTPUT_STIFFNESS, SurfaceNode::LOBE_FORCE };

@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// Text of the faults for the key of the cache; empty without faults.
+/// Text of the faults for the key of a table in the cache; empty without faults.
 std::string keyOf(const FaultList& faults)
 {
   TextStream text;
@@ -23,7 +23,8 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// The only fault of a gear with equal teeth, if it is at a tooth or segment of the flexspline; otherwise null.
+/// The fault of a gear whose teeth are else equal, if it is the only fault and at a tooth or segment of the flexspline;
+/// null in other cases.
 const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& faults)
 {
   Parameters without = parameters;
@@ -35,7 +36,8 @@ const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& 
   return local && teethAreAlike(without) ? fault : nullptr;
 }
 
-/// Surface of the fault at tooth 0, which serves for all teeth: the gear is only turned by a number of pitches.
+/// Surface of a fault at any tooth, made from the surface of this fault at tooth 0. The two gears differ by a turn by a
+/// number of pitches.
 SurfacePool::Surface shiftedSurface(const Parameters& parameters, Fault fault, const SurfaceSource& source)
 {
   const int place = fault.place;
@@ -97,9 +99,9 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
       JointFaults(parameters, of_the_balls).model().ring.of<WaveGeneratorContact>().bearing();
   if (!bearing.dropsOneBall())
   {
-    return none("with more than one fault of the bearing, or a spall longer than the distance of two balls", source);
+    return none("for more than one fault of the bearing, or for a spall longer than the distance of two balls", source);
   }
-  // A single tooth has little influence on the effect of a ball.
+  // A fault of a single tooth hardly changes the effect of a ball, so that the two effects are added.
   const bool adds_up = of_a_tooth != nullptr && describe(of_a_tooth->kind).place == FaultPlace::TOOTH;
   const FaultList felt_by_balls = adds_up ? FaultList() : others;
   const SurfacePool::Surface balls =

@@ -22,7 +22,7 @@ void runTasks(std::size_t count, unsigned threads, const std::function<void(std:
   std::atomic<std::size_t> next{ 0 };
   std::atomic<std::size_t> done{ 0 };
   std::exception_ptr failure;
-  std::mutex mutex;  // protects the failure
+  std::mutex mutex;  // protects `failure`
   const auto work = [&](bool reports)
   {
     try
@@ -54,7 +54,7 @@ void runTasks(std::size_t count, unsigned threads, const std::function<void(std:
   }
   catch (const std::system_error&)
   {
-    // The system allows no more threads; the existing ones do the work.
+    // The system allows no more threads. The existing threads do the work.
   }
   work(true);
   for (std::thread& other : others)

@@ -16,15 +16,15 @@ namespace
 {
 using Node = SurfaceNode;
 using Line = SurfaceLine;
-using Lines = std::map<double, Line>;  // key: v [rad]
+using Lines = std::map<double, Line>;  // lines by their v [rad]
 
-constexpr double TORQUE_MARGIN = 2.0;  // range of the table over the torque limits
-constexpr int COARSE_LINES = 32;  // approximate number of coarse lines on either side of no load, before refinement
-constexpr int MAX_HALVINGS = 9;   // largest number of halvings of an interval between two lines
+constexpr double TORQUE_MARGIN = 2.0;  // largest torque of the table over the torque limit [-]
+constexpr int COARSE_LINES = 32;       // approximate number of lines on each side of no load before refinement
+constexpr int MAX_HALVINGS = 9;        // largest number of halvings of an interval between two lines
 constexpr int MIN_COLUMNS = 16;
 constexpr int MAX_COLUMNS = 64;
 
-/// The line at the opposite v for a gear with mirror symmetry.
+/// Mirror image of a line: the line at the opposite v of a gear with mirror symmetry.
 Line mirrorImage(const Line& line)
 {
   Line image(line.rbegin(), line.rend());
@@ -36,8 +36,9 @@ Line mirrorImage(const Line& line)
   return image;
 }
 
-/// Every coarse line, and every interval between two of them, is a separate task that begins with a newly inserted
-/// ring. The bits of a table therefore do not depend on the number of threads.
+/// Builder of a SurfaceTable. Every coarse line (line before refinement), and every interval between two coarse lines,
+/// is a separate task that begins with a newly inserted ring. The bits of a table therefore do not depend on the number
+/// of threads.
 class SurfaceBuilder
 {
 public:
@@ -56,8 +57,7 @@ public:
     step_ = ring.twist(TORQUE_MARGIN * limit_) / COARSE_LINES;
     if (!(limit_ > 0.0))
     {
-      failure_reason_ =
-          "motor.torque_limit and output.load_torque_limit are both 0, so that there is no range to tabulate";
+      failure_reason_ = "motor.torque_limit and output.load_torque_limit are 0, so that a table would have no range";
     }
     else if (!ring.insert())
     {
@@ -87,7 +87,7 @@ public:
 private:
   bool good() const { return failure_reason_.empty(); }
 
-  /// Fewest columns that resolve a line's torques between them, at loads that the ring reaches.
+  /// Least number of columns that meets the tolerance between the columns, at the loads that the ring can carry.
   int fewestColumns(LineRing& ring)
   {
     int columns = MIN_COLUMNS;
@@ -108,8 +108,8 @@ private:
     return columns;
   }
 
-  /// Measures coarse lines up to the torque limits with margin in both directions; one direction only if the other is
-  /// its mirror image.
+  /// Measures the coarse lines up to TORQUE_MARGIN times the torque limit in both directions of load, or in one
+  /// direction if the gear has mirror symmetry.
   void coverRange(LineRing& ring)
   {
     for (const double direction : { 1.0, -1.0 })
@@ -143,7 +143,7 @@ private:
     keepRange(lines);
   }
 
-  /// Keeps the lines from no load outwards, up to the first without an equilibrium.
+  /// Keeps the lines from no load up to the first line without an equilibrium in each direction of load.
   void keepRange(std::vector<Line>& lines)
   {
     const auto none = static_cast<std::size_t>(std::find(coarse_.begin(), coarse_.end(), 0.0) - coarse_.begin());
@@ -162,8 +162,8 @@ private:
     if (good() && least < limit_)
     {
       TextStream text;
-      text << "the teeth have no equilibrium above " << least << " N.m at the output, but load or motor can apply "
-           << limit_ << " N.m";
+      text << "the teeth have no equilibrium for more than " << least
+           << " N.m at the output, but load or motor can apply " << limit_ << " N.m";
       failure_reason_ = text.str();
     }
     coarse_ = { coarse_.begin() + static_cast<std::ptrdiff_t>(first),
@@ -174,7 +174,7 @@ private:
     }
   }
 
-  /// v of the coarse lines up to the first beyond the torque limit in each direction.
+  /// v of the coarse lines up to the first line above the torque limit in each direction of load [rad].
   std::vector<double> withinLimit() const
   {
     const auto beyond = [&](double v) { return std::abs(lines_.at(v).front()[SurfaceNode::ENERGY_BY_V]) >= limit_; };
@@ -205,7 +205,7 @@ private:
           }
           else
           {
-            fail("the ring did not return to an earlier equilibrium");
+            fail("the ring has no equilibrium where an earlier solve had found one");
           }
           solves_ += own.ring().solves();
         });
@@ -227,7 +227,7 @@ private:
     const Line& line = found[middle] = measure(ring, middle);
     if (line.empty())
     {
-      fail("the ring has no equilibrium between two earlier ones");
+      fail("the ring has no equilibrium between two angles at which it has one");
       return;
     }
     const double miss = LineCheck(ring.ring(), columns_).miss(below.v, below.line, above.v, above.line, middle, line);
@@ -243,7 +243,7 @@ private:
     note(line, miss);
   }
 
-  /// Stores a check. Beyond the torque limit teeth may snap, so that no accuracy is claimed.
+  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap there.
   void note(const Line& line, double miss)
   {
     if (std::abs(line.front()[SurfaceNode::ENERGY_BY_V]) <= limit_)
@@ -253,7 +253,8 @@ private:
     }
   }
 
-  /// Measures a line of the table. Empty: no equilibrium, too many points, or another task has failed.
+  /// Measures the line of the table at `v`. Empty if the ring has no equilibrium, the table would have too many points,
+  /// or another task has failed.
   Line measure(LineRing& ring, double v)
   {
     const std::size_t size = (static_cast<std::size_t>(columns_) + 1) * (mirrored_ ? 2 : 1);
@@ -264,7 +265,7 @@ private:
     return failed_ ? Line{} : ring.measure(v, columns_);
   }
 
-  /// Stores the reason of the first failure.
+  /// Stores the reason of a failure if it is the first failure.
   void fail(const std::string& reason)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -315,13 +316,13 @@ private:
   int columns_{};
   double limit_{};              // torque limit [N.m]
   double step_{};               // distance of coarse lines in v [rad]
-  bool mirrored_{};             // only lines of v >= 0 are measured
+  bool mirrored_{};             // whether the gear has mirror symmetry; then only lines of v >= 0 are measured
   std::vector<double> coarse_;  // v of the coarse lines, ascending
   Lines lines_;
   std::atomic<std::size_t> points_{ 0 };
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
-  std::mutex mutex_;  // protects reason and checks
+  std::mutex mutex_;  // protects failure_reason_ and checks_
   GridChecks checks_;
   std::string failure_reason_;
 };

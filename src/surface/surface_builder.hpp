@@ -26,34 +26,34 @@ struct SurfaceBuild
 
 /// Tabulates the ring in equilibrium from no load to twice the torque that load or motor can apply, in both directions.
 ///
-/// Measured errors determine the grid. An interval is halved if the table's torques or mean friction at its middle miss
-/// those of the ring by more than a tolerance. `model` must repeat after every tooth pitch. There is no surface if its
-/// ring has no equilibrium at the torque limits. The calling thread calls `progress`, which may be empty, with 0 ... 1.
-/// The build ends without a table at more than `max_points` points. The bits of the table do not depend on the number
+/// Measured errors determine the grid. An interval is halved if at its middle the torques or the mean friction of table
+/// and ring differ by more than a tolerance. `model` must repeat after every tooth pitch. There is no table if the ring
+/// of `model` has no equilibrium at the torque limits, or if the table would have more than `max_points` points. The
+/// calling thread calls `progress`, which may be empty, with 0 ... 1. The bits of the table do not depend on the number
 /// of `threads`.
 SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
                           const std::function<void(double)>& progress, std::size_t max_points = MAX_SURFACE_POINTS,
                           unsigned threads = processors());
 
-/// Tabulates forces and positions of the teeth between the outermost of `coarse`. These are the v of lines that the
-/// ring can reach in steps of `step` [rad], no load among them. `mirrored`: they have v >= 0, and the gear has mirror
-/// symmetry.
+/// Tabulates forces and positions of the teeth. `coarse`: v of lines that the ring can reach in steps of `step` [rad],
+/// no load among them; the table ends at the outermost of these lines. `mirrored`: the gear has mirror symmetry, and
+/// `coarse` has only v >= 0.
 ///
-/// Columns and lines are doubled until the values between them are right: each force within TOOTH_FORCE_SHARE of the
-/// largest of its kind, or within LEAST_TOOTH_FORCE. `solves` counts equilibria. Without lines in the result, an
-/// equilibrium was lost or the table would exceed MAX_TOOTH_VALUES.
+/// Columns and lines are doubled until the values between them meet the tolerance. The tolerance of a force is
+/// TOOTH_FORCE_SHARE of the largest force of its quantity, or LEAST_TOOTH_FORCE if this is larger. `solves` counts
+/// equilibria. The result has no lines if the ring had no equilibrium, or if the table would exceed MAX_TOOTH_VALUES.
 ToothResponse buildToothResponse(const SurfaceParameters& parameters, const JointModel& model,
                                  const std::vector<double>& coarse, double step, bool mirrored, unsigned threads,
                                  std::atomic<int>& solves);
 
 constexpr double TOOTH_FORCE_SHARE = 0.01;                        ///< [-]
 constexpr double LEAST_TOOTH_FORCE = 0.5;                         ///< [N]
-constexpr std::size_t MAX_TOOTH_VALUES = std::size_t{ 1 } << 24;  ///< number of floats: 64 MB
+constexpr std::size_t MAX_TOOTH_VALUES = std::size_t{ 1 } << 24;  ///< number of values as float: 64 MB
 
-/// Largest number of points of a table of deviations: 250 MB. A rim with a small crack needs a sixth of it.
+/// Largest number of points of a table of deviations: 250 MB. A rim with a small crack needs a sixth of these points.
 constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
 
-/// Deviations of a gear from one with equal teeth, or the reason why there are none.
+/// Deviations of a gear from the gear with equal teeth, or the reason why there is no table of them.
 struct DeviationBuild
 {
   DeviationTable table;
@@ -61,19 +61,19 @@ struct DeviationBuild
   int solves{};                ///< number of solved equilibria of the ring
 };
 
-/// Tabulates the difference of the ring of `actual` from that of `equal`, whose surface has the range `lowest` ...
-/// `highest` of v [rad].
+/// Tabulates the values of the ring of `actual` minus those of the ring of `equal`. The surface of `equal` has the
+/// range `lowest` ... `highest` of v [rad].
 ///
-/// `repetition`: see SurfaceRing. Measured errors determine the grid as for the surface, but relative to the size of
-/// the deviations, within the accuracy of the surface. The calling thread calls `progress`, which may be empty, with 0
-/// ... 1. The build ends without a table at more than `max_points` points. The bits do not depend on the number of
-/// `threads`.
+/// `repetition`: see SurfaceRing. Measured errors determine the grid as in buildSurface, but the tolerance is relative
+/// to the size of the deviations, within the accuracy of the surface. There is no table if it would have more than
+/// `max_points` points. The calling thread calls `progress`, which may be empty, with 0 ... 1. The bits of the table do
+/// not depend on the number of `threads`.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress,
                                std::size_t max_points = MAX_DEVIATION_POINTS, unsigned threads = processors());
 
-/// Effect of a dropped ball on a gear, or the reason why there is no table of it.
+/// Table of the effect of a dropped ball on a gear, or the reason why there is no table.
 struct BallBuild
 {
   BallTable table;
@@ -82,8 +82,8 @@ struct BallBuild
 
 /// Tabulates the drop of a ball by up to `deepest` [m], for v of `lowest` ... `highest` [rad].
 ///
-/// `sound`: gear without fault of the bearing, which repeats after every tooth pitch. The calling thread calls
-/// `progress`, which may be empty, with 0 ... 1. The bits do not depend on the number of `threads`.
+/// `sound`: gear without a fault of the bearing that repeats after every tooth pitch. The calling thread calls
+/// `progress`, which may be empty, with 0 ... 1. The bits of the table do not depend on the number of `threads`.
 BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
                          double highest, const std::function<void(double)>& progress, unsigned threads = processors());
 }  // namespace hjt

@@ -78,7 +78,7 @@ SurfacePool::Surface SurfacePool::obtain(const std::string& key, const std::func
     }
     catch (...)
     {
-      // The reason that stopped the other thread, perhaps a request, need not apply to this thread.
+      // The exception of the other thread, perhaps from a request to stop, may not concern this thread.
     }
   }
 }
@@ -126,7 +126,7 @@ std::string makeCacheFolder(const std::string& directory)
   const bool is_own = status.st_uid == geteuid();
   if (!S_ISDIR(status.st_mode) || !is_own || (status.st_mode & S_IWOTH) != 0)
   {
-    return directory + (!S_ISDIR(status.st_mode) ? " is no directory" :
+    return directory + (!S_ISDIR(status.st_mode) ? " is not a directory" :
                         !is_own                  ? " belongs to another user" :
                                                    " is writable for everybody");
   }
@@ -153,7 +153,7 @@ std::string tidyCache(const std::string& directory, const std::string& kept, std
   std::vector<CachedFile> tables;
   std::uintmax_t total = 0;
   std::error_code error;
-  // Other processes may remove files at the same time; missing files are skipped.
+  // Other processes may remove files at the same time. Missing files are skipped.
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
   {
     std::error_code gone;
@@ -188,18 +188,18 @@ std::string tidyCache(const std::string& directory, const std::string& kept, std
   }
   return count == 0 ? "" :
                       "removed " + std::to_string(count) + (count == 1 ? " table" : " tables") +
-                          " of response surfaces, not used for longest, " + megabytes(removed) + ": " + directory +
-                          " holds at most " + megabytes(most);
+                          " of response surfaces, the least recently used (" + megabytes(removed) + "), because " +
+                          directory + " holds at most " + megabytes(most);
 }
 
 namespace
 {
-/// First line of a file, followed by the hash of the code that made it.
+/// First words of a file; the hash of the code that made the file follows.
 constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Header of a file with all that determines its table: code, parameters, faults, and the content of files that
+/// Header of a file, with all that determines its table: code, parameters, faults, and the content of files that
 /// parameters name.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
@@ -215,7 +215,7 @@ std::string header(const Parameters& parameters, const std::string& faults)
     }
     text += '\n';
   }
-  // Aligns the numbers that follow.
+  // Fills the header so that the numbers after it are aligned.
   text.append((sizeof(double) - text.size() % sizeof(double)) % sizeof(double), '\n');
   return text;
 }
@@ -237,12 +237,12 @@ void tell(const SurfaceSource& source, const std::string& what)
 
 void tellMisses(const std::string& what, const GridChecks& checks, const SurfaceSource& source)
 {
-  constexpr double MUCH = 5.0;  // factor on the tolerance
+  constexpr double MUCH = 5.0;  // largest error over the tolerance that is not reported [-]
   if (checks.worst > MUCH)
   {
     tell(source, what + ": " + std::to_string(checks.missed) + " of " + std::to_string(checks.made) +
-                     " checks between its nodes miss the tolerance, by up to " + roundedText(checks.worst, 2) +
-                     " times: the grid is as fine there as it may be (docs/response_surface.md)");
+                     " checks between its nodes miss the tolerance. The largest error is " +
+                     roundedText(checks.worst, 2) + " tolerances (docs/response_surface.md)");
   }
 }
 
@@ -250,17 +250,18 @@ void tellMisses(const std::string& what, const GridChecks& checks, const Surface
 void tellMisses(const SurfaceTable& table, const SurfaceSource& source)
 {
   tellMisses("response surface", table.checks, source);
-  tellMisses("response surface, forces of teeth", table.teeth.checks, source);
+  tellMisses("response surface, table of the forces of teeth", table.teeth.checks, source);
 }
 
 void tellMisses(const DeviationTable& table, const SurfaceSource& source)
 {
-  tellMisses("response surface, teeth that differ", table.checks, source);
+  tellMisses("response surface, table for teeth that differ", table.checks, source);
 }
 
 void tellMisses(const BallTable& /*table*/, const SurfaceSource& /*source*/) {}
 
-/// A table from the cache, or built and stored there. Empty: the build failed, and the reason was reported.
+/// Table from the cache or, if it is not there, built and stored in the cache. Empty if the build failed; the reason
+/// was then reported to `source`.
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {
@@ -299,7 +300,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
       {
         tell(source, removed);
       }
-      // Read from the file, whose memory all processes share.
+      // The table is read from the file, because all processes share the memory of the file.
       Table shared;
       if (readTable(path, key, shared))
       {
@@ -310,13 +311,13 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   return std::move(built.table);
 }
 
-/// Number of threads; a running twin keeps one processor.
+/// Number of threads of a build. It leaves one processor to a twin that runs during the build.
 unsigned threadsFor(const SurfaceSource& source)
 {
   return std::max(1u, processors() - (source.background ? 1u : 0u));
 }
 
-/// Largest drop by a fault of the bearing at severity 1 [m].
+/// Largest drop of a ball by any fault of the bearing at severity 1 [m].
 double deepestDrop(const Parameters& parameters)
 {
   RaceDeflection spalled(parameters.bearing);
@@ -330,7 +331,7 @@ std::string ballHeader(const Parameters& parameters, const std::string& faults)
   return header(parameters, faults + "a ball that drops by " + numberText(deepestDrop(parameters)));
 }
 
-/// A table of balls from the cache, or built and stored there.
+/// BallTable, see obtain.
 std::optional<BallTable> obtainBallTable(const Parameters& parameters, const JointModel& model,
                                          const std::string& faults, const SurfaceTable& surface,
                                          const SurfaceSource& source)
@@ -343,18 +344,18 @@ std::optional<BallTable> obtainBallTable(const Parameters& parameters, const Joi
                            });
 }
 
-/// SurfaceRing::repetition. The ring is solved only if the teeth may differ; otherwise the result is 1.
+/// SurfaceRing::repetition, or 1 without a solve of the ring if the teeth cannot differ.
 int repetition(const Parameters& parameters, const JointModel& model, const std::string& faults)
 {
   const bool alike = faults.empty() && teethAreAlike(parameters) && !model.ring.of<WaveGeneratorContact>().hasKinks();
   return alike ? 1 : SurfaceRing(parameters, model).repetition();
 }
 
-/// See obtainSurface. `teeth_alike`: only a surface without deviations is wanted.
+/// See obtainSurface. `teeth_alike`: returns nothing if the teeth differ.
 std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
                                           const std::string& faults, const SurfaceSource& source, bool teeth_alike)
 {
-  // The cache is used only for gears that repeat, because its keys do not contain the reasons of others.
+  // A gear that does not repeat is detected before the cache is read, because keys do not say whether a gear repeats.
   const int pitches = repetition(parameters, model, faults);
   const Parameters equal_parameters = pitches == 1 ? parameters : withEqualTeeth(parameters);
   const JointModel equal = pitches == 1 ? model : JointModel(equal_parameters);

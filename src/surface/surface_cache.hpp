@@ -19,22 +19,22 @@
 
 namespace hjt
 {
-/// Surfaces in memory for the twins of one process, one for each set of parameters. It is thread-safe: a caller waits
-/// only for the surface that it requests. If `make` throws, its caller gets the exception and the next caller tries
-/// again.
+/// Surfaces in memory for the twins of one process, one for each set of parameters. The pool is thread-safe, and a
+/// caller waits only for the surface that it requests.
 class SurfacePool
 {
 public:
   using Surface = std::shared_ptr<const ResponseSurface>;
 
-  /// `kept`: number of surfaces, at least one, that stay in memory without a twin that uses them: the last requested
-  /// ones, 8 MB each.
+  /// `kept`: number of surfaces that stay in memory although no twin uses them, >= 1. These are the last requested
+  /// surfaces, of 8 MB each.
   explicit SurfacePool(std::size_t kept) : kept_(kept) {}
   virtual ~SurfacePool() = default;
   SurfacePool(const SurfacePool&) = delete;
   SurfacePool& operator=(const SurfacePool&) = delete;
 
-  /// The surface with this key, which `make` makes if it is missing; may be null.
+  /// Surface with this key, which may be null. `make` is called if the pool does not have this surface. If `make`
+  /// throws, its caller gets the exception, and the next caller calls its own `make`.
   virtual Surface obtain(const std::string& key, const std::function<Surface()>& make);
 
 private:
@@ -44,7 +44,7 @@ private:
 
   std::size_t kept_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // last requested first
+  std::list<Entry> entries_;  // entries, the last requested entry first
 };
 
 struct SurfaceTables
@@ -53,45 +53,46 @@ struct SurfaceTables
   DeviationTable deviations;
 };
 
-/// Surface of a gear, from the cache or built and stored there. Nothing if the gear has none.
+/// Surface of a gear from the cache or, if it is not there, built and stored in the cache. Nothing if the gear has no
+/// surface.
 ///
 /// `model`: joint of these parameters with its faults; `faults`: text of the faults for the cache, empty without
-/// faults. If the teeth of a part differ by faults or errors of manufacture, the table contains the gear's deviations
-/// from one with equal teeth.
+/// faults. If the teeth of a part differ by faults or errors of manufacture, the result contains the deviations of the
+/// gear from the gear with equal teeth.
 ///
-/// A file is valid if it is a regular file of this user, not writable for others, of at most 1 GB. It must begin with
-/// the hash of this code and equal parameters and faults, end with the hash of its bytes, and contain finite numbers on
-/// ascending lines. Otherwise the table is built again and replaces the file. These checks find damage and other
-/// builds, but not a table that this user has forged. Files are written atomically.
+/// A file in the cache is valid if it is a regular file of this user, not writable for others, of at most 1 GB. It must
+/// begin with the hash of this code and equal parameters and faults, end with the hash of its bytes, and contain finite
+/// numbers on ascending lines. If a file is not valid, the table is built again and replaces the file. These checks
+/// find damage and files of other builds, but not a table that this user has forged. Files are written atomically.
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source);
 
-/// Surface of a gear as of obtainSurface, from the source's pool if it has one.
+/// Surface of obtainSurface, from the pool of the source if the source has a pool.
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                    const SurfaceSource& source);
 
-/// Surface of a gear with a table of the drops of its balls by any fault of the bearing, from the source's pool if it
-/// has one. None if the teeth differ. `model`: with a sound bearing.
+/// Surface of a gear with a BallTable for any fault of the bearing, from the pool of the source if the source has a
+/// pool. Null if the teeth differ. `model`: joint with a sound bearing.
 SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                        const SurfaceSource& source);
 
-/// Whether the directory has a file of the surface with this key of a pool.
+/// Whether the directory has a file of the surface with this key. `key`: key of the surface in a SurfacePool.
 bool surfaceIsKept(const std::string& key, const std::string& directory);
 
-/// Path, in the directory, of the file of the surface with equal teeth for these parameters.
+/// Path of the file in `directory` that holds the surface of the gear with equal teeth for these parameters.
 std::string surfaceCacheFile(const Parameters& parameters, const std::string& directory);
 
-/// Makes a directory for tables if it is missing. It must belong to the user and must not be writable for everybody.
-/// @returns the reason why it cannot be used, as a sentence; empty: it can.
+/// Makes a directory for tables if it is missing. The directory must belong to the user and must not be writable for
+/// everybody. @returns the reason why the directory cannot be used, as a sentence; empty if it can be used.
 std::string makeCacheFolder(const std::string& directory);
 
-/// Largest size of all tables of a directory together, which a single table may exceed [bytes]: $HJT_CACHE_LIMIT, or 4
-/// GB.
-/// @throws ParameterError if HJT_CACHE_LIMIT is invalid.
+/// Largest total size of the tables in a directory [bytes], from $HJT_CACHE_LIMIT [MB], or 4 GB. A single table may
+/// exceed the limit. @throws ParameterError if HJT_CACHE_LIMIT is invalid.
 std::uintmax_t cacheLimit();
 
-/// Removes the least recently used tables (surface_*.bin, deviations_*.bin, balls_*.bin) until all together have at
-/// most `most` bytes, but never `kept`. It also removes temporary files that are more than an hour old. Twins keep a
-/// removed table that they use. @returns what it removed, as a sentence; empty: nothing.
+/// Removes the least recently used tables (surface_*.bin, deviations_*.bin, balls_*.bin) until the remaining tables
+/// have at most `most` bytes, but never the file `kept`. Also removes temporary files that are more than an hour old. A
+/// twin can still use a removed table that it has read. @returns a sentence that says what was removed; empty if
+/// nothing was.
 std::string tidyCache(const std::string& directory, const std::string& kept, std::uintmax_t most);
 }  // namespace hjt

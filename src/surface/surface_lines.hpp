@@ -10,10 +10,10 @@
 
 namespace hjt
 {
-/// Nodes of a table at one v.
+/// Nodes of a SurfaceTable at one v.
 using SurfaceLine = std::vector<SurfaceNode>;
 
-/// A ring that measures lines of the table.
+/// Ring that measures lines of a SurfaceTable.
 class LineRing
 {
 public:
@@ -22,8 +22,8 @@ public:
   const SurfaceRing& ring() const noexcept { return ring_; }
   SurfaceRing& ring() noexcept { return ring_; }
 
-  /// Moves from a new insertion to an output angle by steps of the coarse lines, to stay on their branch. @returns
-  /// false on failure.
+  /// Inserts the ring anew and moves it to `v` at the motor angle 0. The steps are those between coarse lines, so that
+  /// the ring reaches the equilibria of these lines. @returns false if the ring has no equilibrium.
   bool leadTo(double v, double step)
   {
     const int steps = static_cast<int>(std::lround(std::abs(v) / step));
@@ -35,7 +35,8 @@ public:
     return good;
   }
 
-  /// Measures the nodes at one v, in alternating direction for short moves. Empty: no equilibrium.
+  /// Measures the nodes of the line at `v`. Successive lines are measured in alternating directions, so that all moves
+  /// are short. Empty if the ring has no equilibrium.
   SurfaceLine measure(double v, int columns)
   {
     SurfaceLine line(static_cast<std::size_t>(columns) + 1);
@@ -57,14 +58,15 @@ private:
   SurfaceRing ring_;
 };
 
-/// Misses of a table over two lines at the line halfway between them, over the tolerances [-].
+/// Errors of the interpolation in a table, divided by the tolerances ("misses") [-].
 class LineCheck
 {
 public:
   LineCheck(const SurfaceRing& ring, int columns) : ring_(ring), columns_(columns) {}
 
-  /// Miss of the torques at every column and of the mean friction. Where a tooth begins to touch, the rates of all
-  /// teeth and the friction jump. The place differs from line to line, and no grid between two lines resolves it.
+  /// Largest miss of the torques, and miss of the mean friction, between two lines at the measured `line` between them.
+  /// Single values of friction do not count. They jump where a tooth begins to touch, at places that differ from line
+  /// to line, and no grid resolves these jumps.
   double miss(double v_below, const SurfaceLine& below, double v_above, const SurfaceLine& above, double v,
               const SurfaceLine& line) const
   {
@@ -87,7 +89,8 @@ public:
     return std::max(largest, friction_misses / columns_);
   }
 
-  /// Miss of the columns of a line for the torques between them. `finer`: the line with a multiple of the columns.
+  /// Largest miss of the torques between the columns of a line. `finer`: this line, measured with a multiple of the
+  /// columns.
   double missOfColumns(double v, const SurfaceLine& finer) const
   {
     const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);
@@ -100,7 +103,7 @@ public:
     double largest = 0.0;
     for (std::size_t i = 0; i + 1 < finer.size(); ++i)
     {
-      // Two equal lines have no slope by v, so that only the interpolation along u is checked.
+      // The two lines are equal and have no slope by v, so that the check concerns the interpolation along u only.
       ResponseSurface::Place place;
       const double motor_angle = ring_.pitch() * static_cast<double>(i) / static_cast<double>(finer.size() - 1);
       if (surface.locate(motor_angle, v + motor_angle / ring_.ratio(), place))

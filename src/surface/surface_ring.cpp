@@ -18,30 +18,32 @@ namespace
 {
 using Node = SurfaceNode;
 
-constexpr double ANGLE_TOLERANCE = 1e-8;   // error of the output angle at given torque [rad]; 0.002 seconds of arc
-constexpr double MOTOR_TOLERANCE = 1e-4;   // share of the motor's torque limit [-]
+constexpr double ANGLE_TOLERANCE = 1e-8;   // tolerance of the output torque, as output angle: 0.002 arc seconds [rad]
+constexpr double MOTOR_TOLERANCE = 1e-4;   // tolerance of the motor torque, as a share of the motor's torque limit [-]
 constexpr double SAME_TORQUE = 1e-6;       // largest difference of equal torques, as a share of the torque limit [-]
-constexpr double OVERLOAD_FACTOR = 10.0;   // factor on the tolerances beyond the torque limits
-constexpr double COLLISION_MARGIN = 1.25;  // factor on the gear's momentary peak torque [-]
+constexpr double OVERLOAD_FACTOR = 10.0;   // factor on the tolerances above the torque limit [-]
+constexpr double COLLISION_MARGIN = 1.25;  // largest torque of the motor in a table, over the momentary peak torque [-]
 
-/// Divides the flanks into two groups by their direction of sliding, running and twisting, and each group into three by
-/// the size of the slip. `terms`: forces and slips by motor and output; `velocity_ratio`: output speed over motor
-/// speed.
+/// Divides the flanks into groups with common friction. Two groups differ in whether the slip of a running drive and
+/// the slip of an output that turns with the motor at rest have equal signs. Each of them is divided into three groups
+/// by the size of the slip. `terms`: forces and slips of the flanks by motor and output; `velocity_ratio`: output speed
+/// over motor speed.
 ///
-/// While the drive runs, or the output moves with the motor at rest, all flanks of a group slide in the same direction,
-/// so that their sum is exact. The coefficient of friction, which decreases with the slip, is that of the group's root
-/// mean square slip.
+/// If the drive runs, or if the output turns with the motor at rest, all flanks of a group slide in one direction, so
+/// that the sum of their friction is exact. The coefficient of friction, which decreases with the slip, is that of the
+/// group's root mean square slip.
 void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* groups)
 {
   constexpr int SIZES = RingFrictionResponse::FLANK_GROUPS / 2;
-  constexpr double LOW = 0.25;  // share of the mean slip up to which a flank counts for the slowest group alone
-  // share of the mean slip from which a flank counts for the fastest group alone; in between, two groups share it
+  // A flank belongs to the slowest group alone if its slip over the mean slip is below LOW, and to the fastest group
+  // alone if it is above HIGH. Between LOW and HIGH two groups share the flank.
+  constexpr double LOW = 0.25;
   constexpr double HIGH = 1.25;
   struct Sums
   {
     double force{};
-    Eigen::Vector2d slip{ 0.0, 0.0 };     // running and twisting
-    Eigen::Vector2d squares{ 0.0, 0.0 };  // square of running, product of running and twisting
+    Eigen::Vector2d slip{ 0.0, 0.0 };     // force times slip: of the running drive, and of the output alone
+    Eigen::Vector2d squares{ 0.0, 0.0 };  // these two, times the slip of the running drive
   };
   std::array<Sums, RingFrictionResponse::FLANK_GROUPS> sums;
   std::array<double, 2> first{};
@@ -75,7 +77,8 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
     const double size = group.force > 0.0 ? std::sqrt(group.squares[0] / group.force) : 0.0;
     const Eigen::Vector2d rms =
         size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
-    // Converts (motor speed, output speed beyond the following one) to (motor speed, output speed).
+    // Converts from slips per motor speed of the running drive, and per output speed alone, to slips per motor speed
+    // and output speed.
     groups[0] = group.slip[0] - velocity_ratio * group.slip[1];
     groups[2 * SIZES] = group.slip[1];
     groups[4 * SIZES] = rms[0] - velocity_ratio * rms[1];
@@ -84,8 +87,9 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   }
 }
 
-/// Solver of tables for all drives, because the key of a table does not contain the parameters of a step. Torques are
-/// then right to rounding: RingEquilibrium::torques corrects them for the remaining forces.
+/// Solver parameters for the tables of all drives. They are fixed, because the key of a table does not contain the
+/// solver parameters of a twin. RingEquilibrium::torques corrects the torques for the remaining forces, so that the
+/// torques are exact to rounding.
 SolverParameters solverOfTables()
 {
   SolverParameters solver;
@@ -95,8 +99,8 @@ SolverParameters solverOfTables()
   return solver;
 }
 
-/// Torque limit of a table. A blocked wrist's motor could apply 2.6 times the gear's momentary peak, too much for a
-/// table.
+/// Torque limit of a table [N.m]. The motor's part is limited, because the motor of a blocked wrist could apply 2.6
+/// times the gear's momentary peak torque, which is too much for a table.
 double tabulatedTorque(const SurfaceParameters& parameters)
 {
   const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);
@@ -120,9 +124,9 @@ SurfaceParameters::SurfaceParameters(const Parameters& of)
 std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
 {
   const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
-  return "a table as fine as its tolerances require would have more than " + std::to_string(most) +
-         " points; fewer teeth, a smaller wave, smaller torque limits or, where teeth differ, smaller errors and "
-         "faults need fewer points (" +
+  return "a table that meets its tolerances would have more than " + std::to_string(most) +
+         " points. Fewer points are enough for fewer teeth, a smaller wave, smaller torque limits or, if teeth differ, "
+         "smaller errors and faults (" +
          named("gear.teeth_flexspline", parameters.gear.teeth_flexspline) + ", " +
          named("gear.wave_amplitude", parameters.gear.wave_amplitude) + ", " +
          named("motor.torque_limit", parameters.motor.torque_limit) + ", " +
@@ -263,7 +267,7 @@ double SurfaceRing::frictionTorque(const Node& node) const noexcept
 bool SurfaceRing::isMirrored()
 {
   constexpr double SAME_FRICTION = 1e-5;  // largest relative difference of equal friction [-]
-  constexpr int PLACES = 8;               // places in a pitch
+  constexpr int PLACES = 8;               // number of compared angles in a pitch
   std::vector<Node> nodes;
   bool mirrored = true;
   for (const double direction : { 1.0, -1.0 })
@@ -274,7 +278,8 @@ bool SurfaceRing::isMirrored()
     {
       for (int i = 0; i < PLACES && mirrored; ++i)
       {
-        // Neither the middle nor the beginning of a pitch, which are their own mirror images at no load.
+        // The offset of 0.3 avoids the middle and the beginning of a pitch, which are their own mirror images at no
+        // load.
         const double angle = pitch_ * (i + 0.3) / PLACES;
         mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
         const Node node = mirrored ? measure() : Node{};
@@ -298,10 +303,10 @@ bool SurfaceRing::isMirrored()
 
 int SurfaceRing::repetition()
 {
-  constexpr double LOAD = 0.25;  // share of the torque limit [-]
+  constexpr double LOAD = 0.25;  // load of the samples, as a share of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
-  // Half a turn of the wave generator moves the lobes to the same teeth of the flexspline, half a turn and a pitch to
-  // those of the circular spline. If the lobes differ, the period is twice as long.
+  // After half a turn of the wave generator the lobes are at the same teeth of the flexspline. After half a turn and a
+  // pitch they are at the same teeth of the circular spline. If the lobes differ, the period is twice as long.
   const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
   std::array<bool, candidates.size()> repeats;
   repeats.fill(true);

@@ -10,14 +10,14 @@
 
 namespace hjt
 {
-/// The parameters that a response surface needs besides its model.
+/// Parameters that the build of a response surface needs in addition to the model.
 struct SurfaceParameters
 {
   SurfaceParameters(const Parameters& of);
 
   GearParameters gear;
   MeshParameters mesh;
-  MeshParameters unit_friction;  ///< mesh with coefficients of friction 1
+  MeshParameters unit_friction;  ///< parameters of a mesh whose coefficients of friction are 1
   CupParameters cup;
   MotorParameters motor;
   OutputParameters output;
@@ -25,88 +25,90 @@ struct SurfaceParameters
   double momentary_peak_torque;  ///< [N.m]
 };
 
-/// Largest number of points of a table of the ring: 85 MB. The shipped gear needs a tenth of it.
+/// Largest number of points of a SurfaceTable: 85 MB. The shipped gear needs a tenth of these points.
 constexpr std::size_t MAX_SURFACE_POINTS = 500000;
 
 /// Reason why there is no table of more than `most` points, with the parameters that determine its size.
 std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most);
 
-/// A ring in equilibrium that moves over the nodes of a response surface and is measured there.
+/// Ring in equilibrium that moves to the nodes of a response surface and measures their values.
 class SurfaceRing
 {
 public:
   SurfaceRing(const SurfaceParameters& parameters, JointModel model);
 
-  SurfaceRing(const SurfaceRing&) = delete;  // the ring refers to the model
+  SurfaceRing(const SurfaceRing&) = delete;  // ring_ has a pointer to model_
   SurfaceRing& operator=(const SurfaceRing&) = delete;
 
-  /// Solves at angle 0 of motor and output without a guess. @returns false if it did not converge.
+  /// Inserts the wave generator at the motor and output angle 0. @returns false if the insertion did not converge.
   bool insert();
 
-  /// Moves to v = output angle - motor angle / ratio [rad]. @returns false without an equilibrium.
+  /// Moves to a motor angle and v = output angle - motor angle / ratio [rad]. @returns false without an equilibrium.
   bool moveTo(double motor_angle, double v);
 
-  /// Moves with initial tooth points as a guess.
+  /// Moves from a guess of the tooth points at the new position [m].
   bool moveTo(double motor_angle, double v, const Eigen::VectorXd& guess);
 
-  /// Tooth points [m] and, after `measure`, their derivatives by the motor's angle at constant v [m/rad].
+  /// Tooth points [m]. rates: after `measure`, derivatives of these points by the motor angle at constant v [m/rad].
   const Eigen::VectorXd& points() const noexcept { return ring_.shape().points; }
   Eigen::VectorXd rates() const { return ring_.byWaveGenerator() + ring_.byOutput() / ratio_; }
 
-  /// All values of a node at the present position.
+  /// Values of a node at the present position.
   SurfaceNode measure();
 
-  /// Values of a node of the ToothResponse; `values` has room for all quantities of the solved teeth.
+  /// Writes the values of a node of a ToothResponse. `values`: room for all quantities of the solved teeth.
   void measureTeeth(float* values) const noexcept;
   int teeth() const noexcept { return ring_.shape().teeth(); }
   int solvedTeeth() const noexcept
   {
     return ring_.shape().solved;
-  }  ///< half of the teeth if the other half is equal; valid after insertion
+  }  ///< number of solved teeth: half of the teeth if the other half is equal; valid after `insert`
 
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
-  double pitch() const noexcept { return pitch_; }                                      ///< of the teeth [rad]
-  double ratio() const noexcept { return ratio_; }                                      ///< nominal [-]
-  /// Torque limit of load or motor at the output [N.m], at most COLLISION_MARGIN times the momentary peak torque for
-  /// the motor.
+  double pitch() const noexcept { return pitch_; }                                      ///< tooth pitch [rad]
+  double ratio() const noexcept { return ratio_; }                                      ///< nominal ratio [-]
+  /// Torque limit of load or motor at the output, whichever is larger [N.m]. The motor's limit counts with at most
+  /// COLLISION_MARGIN times the momentary peak torque.
   double torqueLimit() const noexcept { return torque_limit_; }
   const JointModel& model() const noexcept { return model_; }
-  JointModel& editModel() noexcept { return model_; }  ///< call between two moves
-  /// Forces of the wave generator on the teeth at the present position, N [N].
+  JointModel& editModel() noexcept { return model_; }  ///< may be called between two moves
+  /// Force of the wave generator on each tooth at the present position [N].
   const Eigen::VectorXd& contactForce() const noexcept { return ring_.forces().of<WaveGeneratorContact>().force; }
 
-  /// Change of v from no load under this torque at the softest slope of the cup [rad].
+  /// Change of v from no load by a torque at the output, with the softest slope of the cup [rad].
   double twist(double torque) const noexcept { return torque / softest_; }
 
-  /// Tolerance of a table's output torque at a node [N.m]: the torque of 0.002 seconds of arc.
+  /// Tolerance of a table's output torque at a node [N.m]: the torque that twists the gear by ANGLE_TOLERANCE.
   double outputTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Tolerance of the motor's torque [N.m]: a share of the motor's torque limit or, without one, of the load's limit
-  /// reduced to the motor.
+  /// Tolerance of a table's motor torque at a node [N.m]: a share of the motor's torque limit or, if this limit is 0,
+  /// of the load's torque limit over the ratio.
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Tolerance of the friction at the motor [N.m]: that of the motor's torque. On balls it is at least 1 % of the
-  /// friction, because a tooth that begins to touch changes the rates of all balls by some per cent, which no grid
-  /// resolves.
+  /// Tolerance of a table's friction at the motor [N.m]: the tolerance of the motor torque. For a wave generator on
+  /// balls it is at least 1 % of the friction. A tooth that begins to touch changes the rates of all teeth by some per
+  /// cent, which no grid resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Friction of ring and bearing at the motor for slow running, with static flank friction [N.m].
+  /// Friction torque of ring and bearing at the motor of a slowly running drive, with static friction of the flanks
+  /// [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
 
-  /// Friction of the flanks per unit of their coefficient [N.m].
+  /// Friction torque of the flanks at the motor over the coefficient of friction [N.m].
   static double flankFriction(const SurfaceNode& node) noexcept;
 
-  /// Number of teeth after which the gear repeats at constant v: 1 with equal teeth, half a turn or a turn if those of
-  /// one part differ; 0: none of these. Torques of both signs, sampled once a pitch, decide.
+  /// Number of tooth pitches after which the gear repeats at constant v, by torques at loads of both signs, sampled
+  /// once in each pitch. It is 1 for equal teeth, and that of half a turn or a turn of the wave generator (with a pitch
+  /// or two more for the circular spline) if the teeth of one part differ; 0: the gear has none of these periods.
   int repetition();
 
-  /// Whether the gear has mirror symmetry: equal friction and opposite torques at opposite angles. Positions at three
-  /// loads decide. False also without an equilibrium.
+  /// Whether the gear has mirror symmetry, by samples at three loads: at opposite angles the friction is equal and the
+  /// torques are opposite. False if the ring has no equilibrium at a sample.
   bool isMirrored();
 
   int solves() const noexcept { return solves_; }
 
-  /// Factor on the tolerances beyond the torque limits.
+  /// Factor on the tolerances at a node: 1 up to the torque limit, larger above it [-].
   double overload(const SurfaceNode& node) const noexcept;
 
 private:

@@ -26,14 +26,14 @@ namespace hjt
 {
 namespace
 {
-/// A file mapped into memory, read-only and shared by all processes. The mapping stays valid if the file's name is
-/// removed or given to another file.
+/// File mapped into memory, read-only and shared by all processes. The mapping stays valid if the file is removed or
+/// replaced by another file.
 class MappedFile
 {
 public:
-  /// Maps a regular file of this user that others cannot write. Null for any other file, and for a file that is empty
-  /// or larger than `most` bytes. It does not block, even on a FIFO. It sets the times of the file to now, which marks
-  /// it as used.
+  /// Maps a regular file of this user that others cannot write. Returns null for any other file, and for a file that is
+  /// empty or larger than `most` bytes. Does not block, even for a FIFO. Sets the times of the file to now, which marks
+  /// the file as used.
   static std::shared_ptr<const MappedFile> ofOwn(const std::string& path, std::size_t most);
 
   ~MappedFile();
@@ -41,7 +41,7 @@ public:
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
-  /// The first byte is at the beginning of a page.
+  /// Bytes of the file, which begin at the start of a memory page.
   std::string_view bytes() const noexcept { return { static_cast<const char*>(start_), size_ }; }
 
 private:
@@ -67,7 +67,7 @@ std::shared_ptr<const MappedFile> MappedFile::ofOwn(const std::string& path, std
   {
     size = static_cast<std::size_t>(status.st_size);
     start = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
-    futimens(descriptor, nullptr);  // no effect on a read-only file system
+    futimens(descriptor, nullptr);  // has no effect on a read-only file system
   }
   close(descriptor);
   return start == MAP_FAILED ? nullptr : std::shared_ptr<const MappedFile>(new MappedFile(start, size));
@@ -78,7 +78,7 @@ MappedFile::~MappedFile()
   munmap(start_, size_);
 }
 
-/// Largest size of a table's file [bytes]; the shipped gear's has 8 MB.
+/// Largest size of a table's file [bytes]. The file of the shipped gear has 8 MB.
 constexpr std::size_t MAX_FILE = std::size_t{ 1 } << 30;
 
 template <class T>
@@ -94,7 +94,7 @@ void append(std::string& bytes, const GridChecks& checks)
   append(bytes, numbers.data(), numbers.size());
 }
 
-/// The table's numbers in the machine's format, because the cache is for this machine.
+/// Numbers of the table in the number format of this machine, because only this machine uses the cache.
 std::string body(const SurfaceTable& table)
 {
   std::string bytes;
@@ -148,14 +148,14 @@ std::string body(const BallTable& table)
   return bytes;
 }
 
-/// Parses a body. `complete` tells at the end whether the bytes and numbers sufficed.
+/// Reader of the numbers of a table's file. `complete` tells at the end whether all numbers were there and valid.
 class BodyReader
 {
 public:
-  /// `bytes` of the file, which begin at a multiple of the size of a number.
+  /// `bytes`: part of the file that begins at a multiple of the size of a number.
   BodyReader(std::shared_ptr<const MappedFile> file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
-  /// Reads a whole number that is at least `least`.
+  /// Reads a whole number, which must be at least `least`.
   std::size_t size(double least)
   {
     constexpr double MAX_VALUE = 1e6;
@@ -190,7 +190,7 @@ public:
     }
   }
 
-  /// Address of the next `count` values, count < 1e12.
+  /// Next `count` values, which stay in the file's memory; count < 1e12.
   template <class T>
   SharedValues<T> shared(std::size_t count)
   {
@@ -202,7 +202,7 @@ public:
   bool complete() const { return good_ && bytes_.empty(); }
 
 private:
-  /// The next `size` bytes; null if there are not enough.
+  /// Next `size` bytes; null if the file has fewer bytes.
   const char* take(std::size_t size)
   {
     good_ = good_ && bytes_.size() >= size;
@@ -311,7 +311,7 @@ bool parseBody(BodyReader& reader, BallTable& table)
   return true;
 }
 
-/// Reads the table; its nodes stay in the file.
+/// See readTable.
 template <class Table>
 bool read(const std::string& path, const std::string& header, Table& table)
 {
@@ -349,7 +349,7 @@ std::string write(const std::string& path, const std::string& header, const Tabl
 std::uint64_t tableChecksum(std::string_view bytes)
 {
   constexpr std::uint64_t PRIME = 1099511628211ull;
-  constexpr int TURN = 29;  // [bits]; without rotation a difference in a word's highest bit alone would stay there
+  constexpr int TURN = 29;  // [bits]; without rotation a change of the highest bit would change no other bit
   std::array<std::uint64_t, 4> rows{ 1, 2, 3, 4 };
   std::array<std::uint64_t, 4> words{};
   while (bytes.size() >= sizeof(words))

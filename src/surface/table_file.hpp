@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// Checksum of a table's file, which finds damage as textHash does. It processes words in independent rows, because a
-/// file of 30 MB is read at every start.
+/// Checksum of a table's file, which finds damage as well as textHash. The checksum is fast, because it processes words
+/// in independent rows: a file of 30 MB is read at every start.
 std::uint64_t tableChecksum(std::string_view bytes);
 
-/// Reads a table from its file: the header, the numbers in the machine's format, and the checksum of both. The nodes
-/// stay in the file. The length of `header` is a multiple of the size of a number. @returns false if the file is not
-/// this user's own, has another header, or is damaged.
+/// Reads a table from its file, which holds the header, the numbers in the machine's format, and the checksum of header
+/// and numbers. The nodes stay in the memory of the file. The length of `header` must be a multiple of the size of a
+/// number. @returns false if the file does not belong to this user, has another header, or is damaged.
 bool readTable(const std::string& path, const std::string& header, SurfaceTable& table);
 bool readTable(const std::string& path, const std::string& header, DeviationTable& table);
 bool readTable(const std::string& path, const std::string& header, BallTable& table);
 
-/// Writes the table. @returns the reason of a failure; empty on success.
+/// Writes a table to its file. @returns the reason of a failure; empty on success.
 std::string writeTable(const std::string& path, const std::string& header, const SurfaceTable& table);
 std::string writeTable(const std::string& path, const std::string& header, const DeviationTable& table);
 std::string writeTable(const std::string& path, const std::string& header, const BallTable& table);

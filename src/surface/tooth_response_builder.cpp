@@ -21,7 +21,7 @@ constexpr int MAX_COLUMNS = 32;
 constexpr int MAX_HALVINGS = 4;
 
 using Values = std::vector<float>;
-using Lines = std::map<double, Values>;  // key: v [rad]
+using Lines = std::map<double, Values>;  // values of the lines by their v [rad]
 
 class ToothResponseBuilder
 {
@@ -94,8 +94,8 @@ public:
 private:
   std::size_t nodeSize() const { return ToothResponse::QUANTITIES * stored_; }
 
-  /// The nodes at one v; the last has the values of the first, shifted by one tooth. Empty: no equilibrium, or too many
-  /// points.
+  /// Measures the nodes of the line at `v`. The last node has the values of the first node, shifted by one tooth. Empty
+  /// if the ring has no equilibrium or the table would have too many values.
   Values measure(LineRing& line_ring, double v, int columns)
   {
     SurfaceRing& ring = line_ring.ring();
@@ -119,7 +119,7 @@ private:
     return line;
   }
 
-  /// Difference between the mean of two nodes and `middle`, over the tolerance [-].
+  /// Largest difference of the mean of two nodes from the node `middle`, divided by the tolerance [-].
   double miss(const float* below, const float* above, const float* middle) const
   {
     double worst = 0.0;
@@ -220,13 +220,13 @@ private:
     table.values = SharedValues<float>(std::move(all));
   }
 
-  /// The line at the opposite v. In the mirror, u becomes a pitch minus u, and the teeth count in the opposite
-  /// direction.
+  /// Mirror image of a line: the line at the opposite v. Its u is a pitch minus u, and the teeth are counted in the
+  /// opposite direction.
   Values mirrorImage(const Values& line, const ToothResponse& table) const
   {
     const double cosine = std::cos(table.pitch);
     const double sine = std::sin(table.pitch);
-    // Half a turn further the positions have the opposite sign.
+    // A tooth half a turn away from a stored tooth has positions of the opposite sign.
     const auto tooth = [&](int number, double& sign)
     {
       const int whole = (number % table.teeth + table.teeth) % table.teeth;
@@ -266,12 +266,12 @@ private:
 
   const SurfaceParameters& parameters_;
   const JointModel& model_;
-  double step_;  // distance of coarse lines in v [rad]
+  double step_;  // difference of v between coarse lines [rad]
   std::size_t stored_{};
   int columns_{ MIN_COLUMNS };
   std::atomic<std::size_t> values_{ 0 };
   std::atomic<bool> failed_{ false };
-  std::mutex mutex_;  // protects the checks
+  std::mutex mutex_;  // protects checks_
   GridChecks checks_;
 };
 }  // namespace

@@ -153,7 +153,7 @@ TEST(SurfaceCache, RemovesWhatHasNotBeenUsedForLongest)
   std::string notice;
   const SurfaceSource source{ folder.path().string(), {}, [&](const std::string& text) { notice += text; } };
   ASSERT_TRUE(obtainSurface(parameters, JointModel(parameters), "", source));
-  EXPECT_THAT(notice, testing::HasSubstr("removed 1 table of response surfaces, not used for longest, 700 MB"));
+  EXPECT_THAT(notice, testing::HasSubstr("removed 1 table of response surfaces, the least recently used (700 MB), "));
   EXPECT_THAT(notice, testing::HasSubstr(folder.path().string() + " holds at most 1075 MB"));
   unsetenv("HJT_CACHE_LIMIT");
   const fs::path own = surfaceCacheFile(parameters, folder.path().string());
