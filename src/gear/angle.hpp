@@ -9,7 +9,7 @@ constexpr double PI = 3.14159265358979323846;
 constexpr double TWO_PI = 2.0 * PI;
 constexpr double DEGREE = PI / 180.0;
 
-/// Largest tangent for which the series of `smallAngle` has full double precision.
+/// Largest tangent for which the series in `smallAngle` has full double precision [-].
 constexpr double SMALL_TANGENT = 0.02;
 
 /// Angle with the tangent `t`, whose magnitude is at most SMALL_TANGENT [rad].
@@ -19,8 +19,8 @@ inline double smallAngle(double t) noexcept
   return t * (1.0 - t2 * (1.0 / 3.0 - t2 * (1.0 / 5.0 - t2 * (1.0 / 7.0 - t2 * (1.0 / 9.0)))));
 }
 
-/// Angle of a vector with the components `along` and `across` relative to a reference direction [rad].
-/// For the small angles of a ring, a series of full double precision is several times faster than atan2.
+/// Angle of a vector with the components `along` and `across` a reference direction [rad]. The function uses a series
+/// for small angles, which is several times faster than atan2 and has full double precision.
 inline double smallAngle(double across, double along) noexcept
 {
   return std::abs(across) < SMALL_TANGENT * along ? smallAngle(across / along) : std::atan2(across, along);

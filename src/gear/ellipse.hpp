@@ -14,7 +14,7 @@ struct EllipseFoot
   double curvature;  ///< curvature of the ellipse at the foot [1/m]
 };
 
-/// Foot for the cosine and sine of the eccentric angle.
+/// Foot for a point (x, y). `c`, `s`: cosine and sine of the eccentric angle of the foot.
 inline EllipseFoot footAt(double a, double b, double x, double y, double c, double s) noexcept
 {
   const double nx = b * c;
@@ -28,7 +28,7 @@ inline EllipseFoot footAt(double a, double b, double x, double y, double c, doub
   return foot;
 }
 
-/// One Newton step of the eccentric angle from (c, s) towards the closest point [rad].
+/// Newton step of the eccentric angle, with the cosine `c` and the sine `s`, towards the closest point [rad].
 inline double closestPointStep(double a, double b, double x, double y, double c, double s) noexcept
 {
   const double focal = a * a - b * b;
@@ -37,7 +37,7 @@ inline double closestPointStep(double a, double b, double x, double y, double c,
   return -slope / bend;
 }
 
-/// Whether the point is near enough for `closestPointNear`: half this distance from the ellipse, relative to the
+/// Whether the point is near enough for `closestPointNear`: its distance from the ellipse is less than 2 % of the
 /// semi-axes.
 inline bool isNear(double a, double b, double x, double y) noexcept
 {
@@ -47,18 +47,18 @@ inline bool isNear(double a, double b, double x, double y) noexcept
   return std::abs(c * c + s * s - 1.0) < NEAR_POINT;
 }
 
-/// Closest point of the ellipse with semi-axes a, b to a nearby point (x, y). This solves thesis eq. 5.8, which the
-/// thesis approximates, by Newton's method on the eccentric angle. The angle is a unit vector, so that no trigonometry
-/// is needed.
+/// Point of the ellipse with the semi-axes a and b that is closest to a nearby point (x, y). Newton's method on the
+/// eccentric angle solves thesis eq. 5.8, which the thesis approximates. The angle is stored as a unit vector, so that
+/// no trigonometric function is needed.
 ///
-/// The start has an error of relative depth times squared eccentricity, about 1e-5 rad on a real wave generator. A step
-/// of size e leaves an error of 0.02 e^2, so that one step reaches 1e-10 rad. The code has no branches and few
-/// divisions, so that the compiler vectorises it.
+/// The first guess has an error of relative depth times squared eccentricity, about 1e-5 rad for a real wave generator.
+/// A Newton step of size e leaves an error of 0.02 e^2, so that one step reaches 1e-10 rad. The code has no branches
+/// and few divisions, so that the compiler vectorises it.
 inline EllipseFoot closestPointNear(double a, double b, double x, double y) noexcept
 {
   const double c0 = x * (1.0 / a);
   const double s0 = y * (1.0 / b);
-  // (c0, s0) has length sqrt(1 + q). The series of the inverse length has an error of q^4 / 4.
+  // The length of (c0, s0) is sqrt(1 + q). The series for 1 / length has an error of q^4 / 4.
   const double q = c0 * c0 + s0 * s0 - 1.0;
   const double inverse = 1.0 - q * (0.5 - q * (0.375 - q * 0.3125));
   const double c = c0 * inverse;
@@ -68,7 +68,7 @@ inline EllipseFoot closestPointNear(double a, double b, double x, double y) noex
   return footAt(a, b, x, y, scale * (c - step * s), scale * (s + step * c));
 }
 
-/// Closest point of the ellipse to any point except the centre.
+/// Point of the ellipse that is closest to a point (x, y), which must not be the centre.
 inline EllipseFoot closestPoint(double a, double b, double x, double y) noexcept
 {
   constexpr int MAX_STEPS = 30;

@@ -19,7 +19,7 @@ Eigen::VectorXd seededDeviations(double total, int seed, int teeth)
   {
     return Eigen::VectorXd::Zero(teeth);
   }
-  constexpr double NUMBERS = 4294967296.0;  // number of values of the generator
+  constexpr double NUMBERS = 4294967296.0;  // number of values of the random generator
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   Eigen::VectorXd deviations = Eigen::VectorXd::Zero(teeth);
   for (int k = 1; k <= teeth / 2; ++k)
@@ -35,7 +35,7 @@ Eigen::VectorXd seededDeviations(double total, int seed, int teeth)
 
 Eigen::VectorXd readDeviations(const std::string& path, int teeth)
 {
-  constexpr double MAX_ERROR = 1e-4;  // [m], a tenth of the pitch of a gear of this size
+  constexpr double MAX_ERROR = 1e-4;  // a tenth of the tooth pitch of the shipped gear [m]
   NumberTable<2> table(path, { "tooth", "deviation" });
   Eigen::VectorXd deviations(teeth);
   std::array<double, 2> row{};

@@ -5,8 +5,8 @@
 
 namespace hjt
 {
-/// Ratio of motor angle to output angle by the numbers of teeth, with the flexspline fixed (thesis section 3.1) [-].
-/// The model does not impose it; torsion and kinematic error are deviations from it.
+/// Ratio of motor angle to output angle that follows from the numbers of teeth, with the flexspline fixed (thesis
+/// section 3.1) [-]. The model does not impose this ratio. Torsion and kinematic error are deviations from it.
 inline double nominalRatio(const GearParameters& gear) noexcept
 {
   return static_cast<double>(gear.teeth_circular_spline) / (gear.teeth_circular_spline - gear.teeth_flexspline);

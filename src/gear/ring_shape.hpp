@@ -14,7 +14,7 @@
 namespace hjt
 {
 /// Tooth points of the flexspline on its inner rim at rest: a regular polygon of radius r0 with tooth 0 on the x axis.
-/// All vectors of the ring are interleaved: x of tooth i at index 2i, y at 2i+1.
+/// Vectors of all tooth points have x of tooth i at the index 2i and y at 2i+1.
 class ToothRing
 {
 public:
@@ -36,12 +36,12 @@ public:
   }
 
   int teeth() const noexcept { return static_cast<int>(points_.size()) / 2; }
-  double pitchAngle() const noexcept { return pitch_angle_; }         ///< angle between neighbouring teeth [rad]
+  double pitchAngle() const noexcept { return pitch_angle_; }         ///< tooth pitch [rad]
   double segmentLength() const noexcept { return segment_length_; }   ///< distance from tooth i to tooth i+1 [m]
-  const Eigen::VectorXd& points() const noexcept { return points_; }  ///< 2 N, tooth points [m]
-  /// 2 N, unit vectors from the centre to each tooth [-]
+  const Eigen::VectorXd& points() const noexcept { return points_; }  ///< tooth points at rest [m]
+  /// unit vector from the centre to each tooth [-]
   const Eigen::VectorXd& radial() const noexcept { return radial_; }
-  /// 2 N, unit vectors from tooth i to tooth i+1 [-]
+  /// unit vector from each tooth i to tooth i+1 [-]
   const Eigen::VectorXd& segments() const noexcept { return segments_; }
 
 private:
@@ -52,12 +52,12 @@ private:
   Eigen::VectorXd segments_;
 };
 
-/// Arguments of the ring's shape: angles of wave generator and circular spline, and amplitude of the wave.
+/// Position of the drive: angles of wave generator and circular spline, and amplitude of the wave generator.
 struct DrivePosition
 {
   double wave_generator_angle{};  ///< angle of the wave generator [rad]
   double output_angle{};          ///< angle of the circular spline [rad]
-  double wave_amplitude{};        ///< amplitude w, which grows from 0 to w0 during the insertion [m]
+  double wave_amplitude{};        ///< amplitude w, which grows from 0 to gear.wave_amplitude during the insertion [m]
 
   bool operator==(const DrivePosition& other) const noexcept
   {
@@ -66,14 +66,14 @@ struct DrivePosition
   }
 };
 
-/// Chord from the preceding to the next tooth. Its outward unit normal is the direction of the tooth.
+/// Chord from the preceding tooth to the next tooth. The outward normal of the chord is the direction of the tooth.
 struct Chord
 {
   Eigen::Vector2d normal;  ///< outward unit normal [-]
   double length;           ///< [m]
 };
 
-/// Copies the values of the first half of the teeth to the second.
+/// Copies the values of the first half of the teeth to the second half.
 template <class Values>
 void repeatHalf(Values& values) noexcept
 {
@@ -81,14 +81,14 @@ void repeatHalf(Values& values) noexcept
   std::copy(values.data(), values.data() + half, values.data() + half);
 }
 
-/// Whether both halves of the values are equal.
+/// Whether the two halves of the values are equal.
 inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
 {
   const Eigen::Index half = values.size() / 2;
   return values.size() == 2 * half && values.head(half) == values.tail(half);
 }
 
-/// Copies the first half of planar vectors (x and y of each tooth) to the second half, with opposite sign.
+/// Copies x and y of the first half of the teeth to the second half, with opposite sign.
 inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 {
   const Eigen::Index half = vectors.size() / 2;
@@ -98,8 +98,9 @@ inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
 /// Deformed ring: the tooth points, the segments between them, and the space of the circular spline that each tooth
 /// faces.
 ///
-/// If the drive has the same state after half a turn, so has the ring. Then `solved` is N/2, and all elements compute
-/// the first half of the teeth only. The points of the other half have the opposite sign.
+/// If the model repeats after half a turn, the shape of the ring repeats too. Then `solved` is half the number of
+/// teeth, and all elements compute the first half of the teeth only. The points of the other half have the opposite
+/// sign.
 struct RingShape
 {
   explicit RingShape(int teeth)
@@ -108,8 +109,8 @@ struct RingShape
   }
 
   int teeth() const noexcept { return static_cast<int>(lengths.size()); }
-  int copies() const noexcept { return solved < teeth() ? 2 : 1; }  ///< copies of the solved teeth in the ring
-  /// The ring with all of its teeth solved.
+  int copies() const noexcept { return solved < teeth() ? 2 : 1; }  ///< 2 if half of the teeth are solved, else 1
+  /// Copy of the shape in which all teeth count as solved.
   RingShape whole() const
   {
     RingShape shape = *this;
@@ -119,11 +120,12 @@ struct RingShape
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Computes directions and lengths from the points of the solved teeth, and the other half by symmetry.
+  /// Computes directions and lengths from the points of the solved teeth. Computes the other half of all values by
+  /// symmetry.
   void updateGeometry() noexcept;
 
-  /// Computes the spaces of the other half from those of the solved teeth; `spaces`: number of the circular spline's
-  /// spaces.
+  /// Computes the spaces of the other half of the teeth from those of the solved teeth. `spaces`: number of spaces of
+  /// the circular spline.
   void repeatSpaces(int spaces) noexcept;
 
   Chord chord(int i) const noexcept
@@ -137,10 +139,10 @@ struct RingShape
     return { { dy * inverse, -dx * inverse }, length };
   }
 
-  Eigen::VectorXd points;      ///< 2 N, tooth points on the inner rim [m]
-  Eigen::VectorXd directions;  ///< 2 N, unit vectors from tooth i to i+1 [-]
-  Eigen::VectorXd lengths;     ///< N, distance from tooth i to i+1 [m]
-  std::vector<int> space;      ///< N, space of the circular spline that each tooth faces [-]
-  int solved;                  ///< number of solved teeth, N or N/2 [-]
+  Eigen::VectorXd points;      ///< x and y of each tooth point, on the inner rim [m]
+  Eigen::VectorXd directions;  ///< unit vector from each tooth i to tooth i+1 [-]
+  Eigen::VectorXd lengths;     ///< distance from each tooth i to tooth i+1 [m]
+  std::vector<int> space;      ///< number of the space of the circular spline that each tooth faces
+  int solved;                  ///< number of solved teeth: all teeth or half of them
 };
 }  // namespace hjt

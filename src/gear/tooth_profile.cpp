@@ -15,8 +15,8 @@ double involuteFunction(double angle)
   return std::tan(angle) - angle;
 }
 
-/// Half thickness of an involute gear at a radius; below the base circle the flank is radial. `reference`: radius of
-/// the pressure angle, where tooth and space have equal width. [m]
+/// Half thickness of a tooth of an involute gear at a radius [m]. Inside the base circle the flank is radial.
+/// `reference`: radius at which the pressure angle holds and tooth and space have equal widths [m].
 double involuteHalfWidth(double radius, double reference, double pressure_angle, int teeth)
 {
   const double at_radius = std::acos(std::min(1.0, reference * std::cos(pressure_angle) / radius));
@@ -24,7 +24,8 @@ double involuteHalfWidth(double radius, double reference, double pressure_angle,
   return radius * std::sin(half_angle);
 }
 
-/// Reduction of a double arc's half thickness from mid-height to the height `y`; it is symmetric about mid-height.
+/// Flank of a double-arc tooth. `fall`: half thickness at mid-height minus half thickness at the height `y` above it
+/// [m].
 class DoubleArc
 {
 public:
@@ -33,7 +34,7 @@ public:
   {
     const double arc_height = 0.5 * gear.tooth_height_flexspline - half_tangent_;
     const double tip_sine = std::sin(std::atan(path.slope(path.entry())));
-    // If the tangent is steeper than the path or as long as the tooth, there is no arc and the flank is straight.
+    // If the tangent is steeper than the path or as long as the tooth, the flank is straight, without an arc.
     curvature_ = arc_height > 0.0 ? std::max(0.0, tip_sine - sine_) / arc_height : 0.0;
   }
 
@@ -125,7 +126,8 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
       const DoubleArc arc(mesh, gear, path);
       sample([&](double down) { return -arc.fall(tip - down); },
              [](double) { return -std::numeric_limits<double>::infinity(); });
-      // The space is the envelope of the tooth along its path. Beyond the reach of the tip it has the width of the tip.
+      // The space is the envelope of the tooth along its path. Below the deepest position of the tip it has the tip's
+      // width.
       space.tail(beyond).setConstant(tooth[0]);
       for (int drop = 0; drop <= intervals; ++drop)
       {
@@ -143,11 +145,11 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
 
 namespace
 {
-constexpr int ENGAGEMENT_INTERVALS = 128;  // intervals of the table from entry to full engagement
-constexpr int BEYOND_INTERVALS = 16;       // intervals beyond full engagement, where a load may push a tooth
-constexpr int SAMPLES = 4;                 // samples of the flanks in an interval of the table
+constexpr int ENGAGEMENT_INTERVALS = 128;  // number of intervals of the table from entry to full engagement
+constexpr int BEYOND_INTERVALS = 16;       // number of intervals beyond full engagement, where a load can push a tooth
+constexpr int SAMPLES = 4;                 // number of samples of the flanks in an interval of the table
 
-/// Half clearance if the tip is at sample `tip` of the space [m].
+/// Half clearance of a tooth whose tip is at the sample `tip` of the space [m].
 double clearanceOf(const FlankShapes& flanks, Eigen::Index tip)
 {
   const Eigen::Index beside = std::min(tip + 1, flanks.tooth.size());
@@ -159,7 +161,7 @@ double clearanceOf(const FlankShapes& flanks, Eigen::Index tip)
   return clearance;
 }
 
-/// Second derivatives, zero at both ends, of the C2 spline through equidistant values, by Thomas' algorithm.
+/// Second derivatives of the C2 spline through equidistant values, by Thomas' algorithm. They are zero at both ends.
 std::vector<double> secondDerivatives(const std::vector<double>& values, double interval)
 {
   std::vector<double> bend(values.size(), 0.0);

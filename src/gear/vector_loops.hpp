@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
-/// Attribute of a function with loops over the teeth: the compiler makes a version for every x86-64 and one for AVX2,
-/// and the loader of the library selects one. On other platforms, and with the thread sanitizer, which cannot watch
-/// that selection, it is empty. AVX-512 is excluded because it implies FMA: GCC 12 then fuses a product with a sum even
-/// with -ffp-contract=off.
+/// Attribute of a function with loops over the teeth. The compiler makes one version for every x86-64 and one for AVX2,
+/// and the loader of the library selects a version. The attribute is empty on other platforms, and with the thread
+/// sanitizer, which cannot watch this selection. There is no version for AVX-512, because AVX-512 implies FMA, and GCC
+/// 12 then fuses a product with a sum even with -ffp-contract=off.
 #if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define HJT_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -17,9 +17,9 @@
 namespace hjt
 {
 /// Sums over teeth or friction terms whose bits do not depend on the width of the processor's vectors. A SIMD reduction
-/// would add in an order that depends on the width. These sums store the vectorised terms and add them in a fixed
-/// order. `terms(i, rows, k)` writes N terms of index i to rows[0 ... N-1][k] and must not write to data of another i.
-/// A local array of terms would prevent GCC from vectorising the loop.
+/// would add in an order that depends on this width. These sums store the vectorised terms and add them in a fixed
+/// order. `terms(i, rows, k)` writes the N terms of index i to rows[0 ... N-1][k] and must not write to data of another
+/// i. In `terms`, a local array would prevent GCC from vectorising the loop.
 namespace block_sums
 {
 constexpr int BLOCK = 32;
@@ -49,7 +49,7 @@ inline __attribute__((always_inline)) void add(const double (&block)[N][BLOCK], 
 }
 }  // namespace block_sums
 
-/// N sums of `count` terms each, from index `first` on.
+/// N sums over `count` indices, from `first` on.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> blockSums(int first, int count, const Terms& terms) noexcept
 {
@@ -80,14 +80,14 @@ inline __attribute__((always_inline)) std::array<double, N> blockSums(int first,
   return sums;
 }
 
-/// Sum of one term `term(i)` for each index.
+/// Sum of `term(i)` over `count` indices, from `first` on.
 template <class Term>
 inline __attribute__((always_inline)) double blockSum(int first, int count, const Term& term) noexcept
 {
   return blockSums<1>(first, count, [&](int i, auto& rows, int k) { rows[0][k] = term(i); })[0];
 }
 
-/// Sums of about a dozen terms or fewer, added one after the other.
+/// N sums over `count` indices from 0, for about a dozen indices or fewer. The terms are added one after the other.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> fewSums(int count, const Terms& terms) noexcept
 {

@@ -19,7 +19,7 @@ JointModel::JointModel(const Parameters& parameters)
 {
 }
 
-/// Dry friction at the motor's shaft without that of the flanks; sets `presliding`.
+/// Dry friction at the motor's shaft without that of the flanks [N.m]. Also sets JointFriction::presliding.
 double JointModel::shaftStrength(const Running& running, double contact_force, double ring_torque,
                                  JointFriction& friction) const noexcept
 {

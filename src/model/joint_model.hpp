@@ -16,14 +16,15 @@ struct JointInputs
 {
   double load() const noexcept { return load_torque + arm_torque; }  ///< sum of the torques on the output [N.m]
 
-  double motor_torque{};  ///< torque wanted of the drive at 25 degC, within its torque limit [N.m]
+  double motor_torque{};  ///< torque that the motor should have at 25 degC, within its torque limit [N.m]
   double load_torque{};   ///< external torque at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
   double temperature{};  ///< temperature of the grease [degC]
   double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// The whole joint: ring, motor, bearing, load, frictions. Solvers use it unchanged; JointFaults changes its own copy.
+/// The whole joint: ring, motor, bearing, load and frictions. Solvers do not change the model. JointFaults changes its
+/// own copy.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);
@@ -42,8 +43,8 @@ struct JointModel
            motor.coggingEnergy(position.wave_generator_angle);
   }
 
-  /// All torques on motor and output except friction. `motor_torque`: of the drive; `load_torque`: as in JointInputs
-  /// [N.m].
+  /// Torques on motor and output except friction [N.m]. `motor_torque`: torque of the motor [N.m]; `load_torque`: see
+  /// JointInputs.
   Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position, double motor_torque,
                          double load_torque) const noexcept
   {
@@ -61,32 +62,32 @@ struct JointModel
     return response;
   }
 
-  /// Inputs of the friction that the ring does not determine.
+  /// Quantities that the friction depends on besides the state of the ring.
   struct Running
   {
     Eigen::Vector2d speeds;  ///< speeds of motor and output [rad/s]
-    double brake_torque;     ///< torque that the brake holds with at this instant, at the motor [N.m]
+    double brake_torque;     ///< holding torque of the brake at the motor [N.m]
     double viscosity;        ///< effective viscosity of the bearing's grease [m^2/s]
   };
 
-  /// Friction of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the ring's points
-  /// by the motor angle [m/rad], while the output turns at the velocity ratio.
+  /// Friction torque of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the tooth points
+  /// by the motor angle while the output turns at the velocity ratio [m/rad].
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {
     return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
            flexing_loss.torque(shape, forces.of<RimBending>(), running);
   }
 
-  /// All friction except that of a cup with a state. `forces`: at the shape of `rates`; `velocity_ratio`: output speed
-  /// over motor speed at constant load, from the stiffness of the ring [-].
+  /// Computes all friction except that of a CupFriction with a state. `forces`: forces at the shape of `rates`;
+  /// `velocity_ratio`: output speed over motor speed at constant load [-].
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
-  /// Updates the friction for other inputs at the same ring.
+  /// Updates the friction for another `running` at an unchanged ring.
   void frictionAt(const Running& running, JointFriction& friction) const noexcept;
 
-  /// All friction from a summary of the ring. `cup_slip`: derivatives of the rim's mean rotation by motor and output
-  /// angle [-].
+  /// Computes all friction from the RingFrictionResponse of a table. `cup_slip`: derivatives of the rim's mean rotation
+  /// by motor and output angle [-].
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
 

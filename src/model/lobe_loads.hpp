@@ -8,16 +8,16 @@
 
 namespace hjt
 {
-/// View of the forces on the teeth at one instant, with one entry for each tooth of the flexspline.
+/// Forces on the teeth at one instant, with one entry for each tooth of the flexspline.
 struct ToothSample
 {
-  Eigen::Ref<const Eigen::VectorXd> mesh_force;            ///< force on the flank, signed by flank [N]
+  Eigen::Ref<const Eigen::VectorXd> mesh_force;            ///< force on the flank; > 0 leading, < 0 trailing flank [N]
   Eigen::Ref<const Eigen::VectorXd> wave_generator_force;  ///< force of the wave generator [N]
   Eigen::Ref<const Eigen::VectorXd> tooth_angle;           ///< angle of the tooth [rad]
   double wave_generator_angle;                             ///< angle of the major axis [rad]
 };
 
-/// Loads of both lobes. The first lobe is at the wave generator's angle, the second half a turn away.
+/// Loads of both lobes. The first lobe is at the wave generator's angle, the second lobe half a turn away.
 inline LobeLoads lobeLoads(const ToothSample& sample) noexcept
 {
   LobeLoads loads;

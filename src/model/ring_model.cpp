@@ -14,7 +14,7 @@ std::tuple<Elements...> makeElements(const Parameters& parameters, const ToothRi
   return std::tuple<Elements...>(Elements(parameters, rest)...);
 }
 
-/// Calls `add` with each element, with the teeth only if the circular spline is present.
+/// Calls `add` with each element of the ring, but not with ToothMesh if `with_mesh` is false.
 template <class Add>
 void forEach(const RingElements& elements, bool with_mesh, const Add& add) noexcept
 {
@@ -55,7 +55,7 @@ void RingModel::forces(const RingShape& shape, const DrivePosition& position, Ri
 
 void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept
 {
-  assert(forces.areOf(shape) && "forces computed last for the same shape");
+  assert(forces.areOf(shape) && "the forces are those of another shape");
   tangent.setZero(shape.solved);
   forEach(elements_, meshed_,
           [&](const auto& element)
@@ -71,7 +71,7 @@ void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTa
 
 int RingModel::solvedTeeth() const noexcept
 {
-  constexpr int FEWEST = 16;  // least number of teeth of a half for CyclicSolver
+  constexpr int FEWEST = 16;  // least number of teeth of the ring for a CyclicSolver of its half
   const bool repeats = std::apply([](const auto&... element) { return (element.repeats() && ...); }, elements_) &&
                        rest.teeth() >= FEWEST;
   return repeats ? rest.teeth() / 2 : rest.teeth();

@@ -22,15 +22,15 @@ namespace hjt
 ///   constructor (const Parameters&, const ToothRing& rest)
 ///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; void repeat() noexcept; }
 ///   void addForces(const RingShape&, const DrivePosition&, Scratch&, ForceSum&) const noexcept
-///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the forces' shape
-///   bool repeats() const noexcept: whether its state repeats after half a turn, so that it adds for the solved teeth
-///                                  only. Otherwise the whole ring is solved. `repeat` computes the other half.
+///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the last shape of addForces
+///   bool repeats() const noexcept: whether the element repeats after half a turn. If all elements repeat, they add for
+///                                  half of the teeth only, and Scratch::repeat computes the other half.
 ///
-/// The scratch carries results of the forces to tangent, friction and outputs. docs/extending.md describes how to add
-/// an element.
+/// Scratch keeps results of addForces for tangent, friction and outputs. docs/extending.md describes how to add an
+/// element.
 using RingElements = std::tuple<RimTension, RimBending, WaveGeneratorContact, CupTorsion, ToothMesh>;
 
-/// Sum over the elements, with the intermediate results of each.
+/// Sum of the forces of all elements, with the intermediate results of each element.
 struct RingForces : ForceSum
 {
   explicit RingForces(int count) : ForceSum(count), scratch_(Scratches<RingElements>::make(count)) {}
@@ -41,7 +41,7 @@ struct RingForces : ForceSum
     std::apply([](auto&... scratch) { (scratch.setZero(), ...); }, scratch_);
   }
 
-  /// Extends the forces of the first half of the ring to the whole.
+  /// Extends the forces of the first half of the ring to the whole ring.
   void repeat() noexcept
   {
     ForceSum::repeat();
@@ -60,14 +60,14 @@ struct RingForces : ForceSum
     return std::get<typename Element::Scratch>(scratch_);
   }
 
-  /// Stores a hash of the shape of these forces, in builds with assertions.
+  /// In builds with assertions, stores a hash of the shape that these forces belong to.
   void stamp([[maybe_unused]] const RingShape& shape) noexcept
   {
 #ifndef NDEBUG
     stamp_ = hash(shape);
 #endif
   }
-  /// Whether the forces belong to this shape; always true in builds without assertions.
+  /// Whether these forces belong to `shape`; always true in builds without assertions.
   bool areOf([[maybe_unused]] const RingShape& shape) const noexcept
   {
 #ifndef NDEBUG
@@ -104,13 +104,13 @@ private:
   std::uint64_t stamp_{};
 };
 
-/// A number that differs after every change of a model and after every assignment to it.
+/// Version of a model: a number that changes with every change of the model and with every assignment to it.
 class ModelVersion
 {
 public:
   ModelVersion() = default;
   ModelVersion(const ModelVersion&) = default;
-  ModelVersion& operator=(const ModelVersion&) noexcept  // self-assignment is a change too
+  ModelVersion& operator=(const ModelVersion&) noexcept  // a self-assignment is a change too
   {
     next();
     return *this;
@@ -135,18 +135,18 @@ public:
   /// @throws ParameterError if a table of pitch errors is invalid.
   explicit RingModel(const Parameters& parameters);
 
-  /// Forces and stored energy, without the teeth while the circular spline is absent. The shape's geometry must be up
-  /// to date.
+  /// Computes forces and stored energy, without those of the mesh if the circular spline is absent. Requires
+  /// RingShape::updateGeometry of `shape`.
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 
-  /// Hessian of the stored energy by the solved teeth; `forces` must be of the same shape.
+  /// Computes the Hessian of the stored energy. `forces`: result of `forces` for `shape`.
   void tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
-  /// Number of teeth to solve: N/2 if the drive repeats after half a turn, else N.
+  /// Number of teeth to solve: half of them if the model repeats after half a turn, else all.
   int solvedTeeth() const noexcept;
 
-  /// The ring at rest, where every tooth faces its nearest space.
+  /// Shape of the ring at rest, in which every tooth faces its nearest space.
   RingShape restShape(const DrivePosition& position) const;
 
   template <class Element>
@@ -155,7 +155,7 @@ public:
     return std::get<Element>(elements_);
   }
 
-  /// An element to be changed; the reference is valid until the next solve.
+  /// Element that the caller may change until the next solve.
   template <class Element>
   Element& edit() noexcept
   {
@@ -182,7 +182,7 @@ private:
   ModelVersion version_;
 };
 
-/// Torques and stiffness of the ring in equilibrium at the two angles of the joint, without friction.
+/// Torques and stiffness of the ring in equilibrium at given motor and output angles, without friction.
 struct RingResponse
 {
   double energy{};                 ///< stored energy [J]
@@ -193,16 +193,16 @@ struct RingResponse
   double motor_stiffness{};        ///< stiffness of the wave generator with the output held [N.m/rad]
 };
 
-/// Friction of the ring in equilibrium, with respect to the two speeds of the joint.
+/// Friction of the ring in equilibrium, with respect to the speeds of motor and output.
 struct RingFrictionResponse
 {
-  /// Groups of loaded flanks with similar sliding: sum_i |F_i| |slip_i . (motor, output speed)|, exact if all flanks of
-  /// a group slide in the same direction.
+  /// number of groups of loaded flanks with similar sliding. The power of a group, sum_i |F_i| |slip_i . (motor speed,
+  /// output speed)| with the flanks' forces F_i, is exact if all its flanks slide in one direction
   static constexpr int FLANK_GROUPS = 6;
   using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 
-  double contact_force{};     ///< load of the wave generator's bearing: sum over all teeth [N]
-  double ring_torque{};       ///< torque at the motor shaft of outer race and flexing rim [N.m]
+  double contact_force{};     ///< load of the wave generator's bearing: sum of the forces on all teeth [N]
+  double ring_torque{};       ///< friction torque of outer race and flexing rim at the motor shaft [N.m]
   Eigen::Vector3d viscous;    ///< damping of the dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
   Groups flank_by_motor;      ///< sum of force times slip per motor speed [N.m]
   Groups flank_by_output;     ///< sum of force times slip per output speed [N.m]

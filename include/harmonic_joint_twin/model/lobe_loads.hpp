@@ -5,13 +5,13 @@
 
 namespace hjt
 {
-/// How the two lobes of the wave generator share the load.
+/// Loads of the two lobes of the wave generator.
 struct LobeLoads
 {
   int teeth_loaded{};  ///< number of teeth that carry mesh force [-]
-  /// sum of the magnitudes of mesh force over the teeth within a quarter turn of each lobe [N]
+  /// for each lobe the sum of |mesh force| over the teeth within a quarter turn of the lobe [N]
   std::array<double, 2> mesh_force{};
-  double asymmetry{};             ///< (first - second) / (first + second) mesh force; 0 without load [-]
-  double wave_generator_force{};  ///< load of the wave generator's bearing: sum over all teeth [N]
+  double asymmetry{};  ///< difference over sum of the two mesh forces, > 0: more at lobe 0; 0 without load [-]
+  double wave_generator_force{};  ///< load of the wave generator's bearing: sum of the forces on all teeth [N]
 };
 }  // namespace hjt

@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Applies `change` to the entry of a place, or to all entries for WHOLE_MEMBER.
+/// Applies `change` to the value at a place, or to all values if the place is WHOLE_MEMBER.
 template <class Change>
 void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 {
@@ -27,7 +27,8 @@ void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 
 // Faults of the rim.
 
-/// A crack in the rim behind a tooth, with the depth `severity` times fault_scale.rim_crack_depth of the thickness.
+/// Crack in the rim behind a tooth. The crack is `severity` times fault_scale.rim_crack_depth of the rim's thickness
+/// deep.
 void crackRim(int segment, double severity, const Parameters& parameters, RingModel& ring) noexcept
 {
   const double left = 1.0 - severity * parameters.fault_scale.rim_crack_depth;
@@ -50,7 +51,8 @@ void crackFlexspline(const Fault& fault, const Parameters& parameters, JointMode
   }
 }
 
-/// Wear leaves a gap between rim and race and increases their friction. A worn segment contributes its share.
+/// Wear leaves a gap between rim and race and increases the friction between them. A single worn segment increases the
+/// friction by its share of the circumference.
 void wearInterface(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double part = fault.place == WHOLE_MEMBER ? 1.0 : 1.0 / parameters.gear.teeth_flexspline;
@@ -60,7 +62,8 @@ void wearInterface(const Fault& fault, const Parameters& parameters, JointModel&
                                  fault.severity * part * (parameters.fault_scale.interface_friction_factor - 1.0));
 }
 
-/// The free rim would have waves e cos(n psi), which change its curvature by (n^2 - 1) e cos(n psi) / r^2.
+/// Without forces the rim would have waves e cos(n psi), which change its curvature by (n^2 - 1) e cos(n psi) / r^2,
+/// with the amplitude e, n waves in a turn, the angle psi of the tooth and the radius r.
 void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -78,8 +81,9 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
 
 // Faults of the cup.
 
-/// A crack around a part x of the circumference. The rest carries the torque, so that the cracked part of the wall is
-/// softer by 1/(1 - x). `share`: share of that part in the wall's compliance. The faces of the crack rub on each other.
+/// Crack around the share x of the circumference. The remaining circumference carries the torque, so that the
+/// compliance of the cracked section of the wall is multiplied by 1/(1 - x). `share`: compliance of this section over
+/// that of the wall [-]. The faces of the crack rub on each other.
 void crackCup(const Fault& fault, double share, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double cracked = fault.severity * parameters.fault_scale.cup_crack_fraction;
@@ -109,22 +113,23 @@ void degradeLubricant(const Fault& fault, const Parameters& parameters, JointMod
 
 // Faults of the teeth.
 
-/// Stiffness of a tooth pair relative to a sound one, if the bending stiffness of the flexspline's tooth is reduced to
-/// `bending`. `share`: share of that bending in the pair's compliance.
+/// Stiffness of a tooth pair over that of a sound pair [-]. `bending`: bending stiffness of the flexspline's tooth over
+/// that of a sound tooth; `share`: share of this bending in the compliance of a sound pair.
 double softened(double bending, double share) noexcept
 {
   return bending / (bending + share * (1.0 - bending));
 }
 
-/// Remaining bending stiffness of a tooth, a cantilever, with its thickness reduced by `loss`.
+/// Bending stiffness of a tooth over that of a sound tooth [-], as a cantilever whose thickness is reduced by the share
+/// `loss`.
 double thinned(double loss) noexcept
 {
   const double left = loss < 1.0 ? 1.0 - loss : 0.0;
   return left * left * left;
 }
 
-/// Remaining bending stiffness of a tooth that a crack along its middle has split over `length` of its height from the
-/// tip. The two leaves of half the thickness bend four times as much under a force at the tip.
+/// Bending stiffness of a tooth over that of a sound tooth [-], if a crack along the middle has split the tooth from
+/// the tip over the share `length` of its height. The two leaves have half the thickness and bend four times as much.
 double split(double length) noexcept
 {
   return 1.0 / (1.0 + 3.0 * length * length * length);
@@ -134,7 +139,7 @@ void wearTeeth(const Fault& fault, const Parameters& parameters, JointModel& joi
   const GearParameters& gear = parameters.gear;
   const double across =
       fault.severity * parameters.fault_scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
-  // Half the pitch at mid-height of the tooth.
+  // The tooth is half as thick as the pitch at mid-height.
   const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
   const double factor = softened(thinned(2.0 * across / thickness), parameters.fault_scale.tooth_compliance_share);
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -169,7 +174,7 @@ void pit(const Fault& fault, const Parameters& parameters, JointModel& joint) no
   atPlace(fault.place, joint.mesh_friction.toothFactor(), [&](double& factor) { factor *= friction; });
 }
 
-/// Damage after a jump of the teeth: worn tips, and a circular spline that is no longer coaxial.
+/// Damage by a jump of the teeth: worn tips, and a circular spline off the axis of the drive.
 void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -179,7 +184,8 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
 
 // Faults of the wave generator and its bearing.
 
-/// The lobes carry the largest force and wear. The smaller mean radius of the plug then loosens the bearing's races.
+/// The lobes wear because they carry the largest force. This reduces the mean radius of the wave generator and so
+/// loosens the races of the bearing.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -231,7 +237,7 @@ struct Edit
 {
   FaultKind kind;
   void (*edit)(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
-  unsigned parts;  // bits of FaultPart
+  unsigned parts;  // changed parts, as bits of FaultPart
 };
 constexpr std::array EDITS{
   Edit{ FaultKind::INTERFACE_WEAR, wearInterface, GENERATOR_PART | FRICTION_PART },

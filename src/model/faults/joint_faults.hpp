@@ -7,8 +7,8 @@
 
 namespace hjt
 {
-/// Adds a valid fault to a joint. Several faults of one part combine: factors multiply, lengths and forces add.
-/// docs/faults.md describes each kind.
+/// Adds a valid fault to a joint. If several faults change a quantity of the joint, their factors are multiplied, and
+/// their lengths and forces are added. docs/faults.md describes each kind of fault.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
 /// Parts of the joint that a fault changes, as bits of partsOf.
@@ -17,18 +17,18 @@ enum FaultPart : unsigned
   RIM_PART = 1,        ///< stiffness or free shape of the flexspline's rim
   CUP_PART = 2,        ///< wall of the flexspline's cup
   MESH_PART = 4,       ///< teeth
-  GENERATOR_PART = 8,  ///< wave generator with its bearing, or its contact with the rim
+  GENERATOR_PART = 8,  ///< wave generator, its bearing, or its contact with the rim
   FRICTION_PART = 16
 };
 unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept;
 
-/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim (false), by the backup ratio rim
-/// thickness / tooth height (thesis 3.4.2): through the tooth above 1, into the rim below 0.4. In between, the worse
-/// case is assumed.
+/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim (false). This depends on the backup
+/// ratio rim thickness / tooth height (thesis 3.4.2). Above 1 the crack runs through the tooth, below 0.4 into the rim.
+/// Between 0.4 and 1 the function assumes the worse case, the rim.
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
 
-/// A joint with its active faults. Each change starts from the sound joint, so that a removed fault leaves no trace.
-/// Only the construction allocates.
+/// Joint with its active faults. Each change of the faults starts from the sound joint, so that a removed fault leaves
+/// no trace. Only the construction allocates.
 class JointFaults
 {
 public:
@@ -38,17 +38,17 @@ public:
     apply(faults);
   }
 
-  /// Replaces the faults of the joint by these valid ones.
+  /// Replaces the faults of the joint by `faults`, which must be valid.
   void apply(const FaultList& faults) noexcept
   {
-    model_ = sound_;  // the vectors have equal size, so nothing is allocated
+    model_ = sound_;  // allocates nothing, because all vectors have equal sizes
     for (const ActiveFault& active : faults)
     {
       addFault(active.fault, parameters_, model_);
     }
   }
 
-  /// The joint with its present faults; the reference stays valid.
+  /// Joint with its present faults. The reference stays valid after `apply`.
   const JointModel& model() const noexcept { return model_; }
 
 private:
@@ -57,7 +57,7 @@ private:
   JointModel model_;
 };
 
-/// The faults that a joint with these parameters has at the start.
+/// Faults that a joint with these parameters has at the start.
 inline FaultList faultsAtStart(const Parameters& parameters)
 {
   FaultList faults;
@@ -71,7 +71,7 @@ inline FaultList faultsAtStart(const Parameters& parameters)
   return faults;
 }
 
-/// The joint with the faults of the start.
+/// Joint with the faults that it has at the start.
 inline JointModel startingJoint(const Parameters& parameters)
 {
   return JointFaults(parameters, faultsAtStart(parameters)).model();

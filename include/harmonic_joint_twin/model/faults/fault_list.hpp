@@ -9,7 +9,7 @@
 
 namespace hjt
 {
-/// A fault that is active.
+/// Active fault of a drive.
 struct ActiveFault
 {
   Fault fault;           ///< kind, severity and place
@@ -20,8 +20,9 @@ struct ActiveFault
 class FaultList
 {
 public:
-  /// Adds a fault, or changes the severity of the fault of this kind and place; severity 0 removes that fault.
-  /// A fault that does not change keeps its stamp. @returns false and changes nothing if the list is full.
+  /// Adds a fault, or changes the severity of the fault of this kind and place. The severity 0 removes the fault. A
+  /// fault whose severity does not change keeps its time `since`. @returns false and changes nothing if the list is
+  /// full.
   bool set(const Fault& fault, std::int64_t since) noexcept;
   void clear() noexcept  ///< removes all faults
   {
@@ -32,8 +33,8 @@ public:
   const ActiveFault* begin() const noexcept { return faults_.data(); }        ///< first fault
   const ActiveFault* end() const noexcept { return faults_.data() + size_; }  ///< end of the faults
   std::size_t size() const noexcept { return size_; }                         ///< number of faults, 0 ... MAX_FAULTS
-  bool empty() const noexcept { return size_ == 0; }                          ///< no fault is active
-  std::uint64_t version() const noexcept { return version_; }                 ///< changes with every change of the list
+  bool empty() const noexcept { return size_ == 0; }                          ///< whether no fault is active
+  std::uint64_t version() const noexcept { return version_; }                 ///< changes whenever the list changes
 
 private:
   std::array<ActiveFault, MAX_FAULTS> faults_{};
