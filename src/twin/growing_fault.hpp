@@ -7,14 +7,14 @@
 
 namespace hjt
 {
-/// A fault whose severity grows linearly with time from its onset.
+/// Fault whose severity grows linearly with time from its onset.
 struct GrowingFault
 {
-  static constexpr int STEPS = 40;  ///< number of steps that approximate the growth, with an error of half a step
+  static constexpr int STEPS = 40;  ///< number of equal steps that approximate the growth, with an error of half a step
   static constexpr double MAX_RAMP = 1e9;  ///< [s]
 
   Fault fault;
-  double ramp{};  ///< duration of the growth; 0: at once [s]
+  double ramp{};  ///< duration of the growth; 0: the fault has its full severity at once [s]
 
   double severityAt(double time) const  ///< severity at `time` since the start [s]
   {
@@ -22,7 +22,7 @@ struct GrowingFault
     return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;
   }
 
-  /// The growth in steps: one fault for each step, ordered by onset.
+  /// Faults that approximate the growth: one fault for each step, ordered by onset.
   std::vector<Fault> steps() const
   {
     if (ramp <= 0.0)

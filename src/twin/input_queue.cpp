@@ -24,7 +24,7 @@ void InputQueue::push(const Input& input, Stamp now) noexcept
     ++counters_.overflow;
     if (input.stamp < inputs_[first_].stamp)
     {
-      return;  // the new input is older than all in the queue
+      return;  // the new input is older than all inputs in the queue
     }
     first_ = (first_ + 1) % CAPACITY;
     --size_;
@@ -35,7 +35,7 @@ void InputQueue::push(const Input& input, Stamp now) noexcept
     ++counters_.late;
   }
 
-  // Searches from the end, because stamps are nearly always ascending.
+  // The search for the place starts at the end, because stamps nearly always ascend.
   std::size_t place = size_;
   while (place > 0)
   {
@@ -59,7 +59,7 @@ bool InputQueue::pop(Stamp instant, Input& input) noexcept
   }
   input = inputs_[first_];
   --size_;
-  // an empty queue starts again at 0, so that it stays in the processor's cache
+  // An empty queue starts again at 0, so that the used part of the storage stays in the processor's cache.
   first_ = size_ == 0 ? 0 : (first_ + 1) % CAPACITY;
   return true;
 }

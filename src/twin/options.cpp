@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Check for numbers that fulfil `holds`; otherwise the error is "'TEXT' WRONG".
+/// Check that a text is a number for which `holds` is true. The error is the text in quotes, followed by `wrong`.
 Option::Check bound(const std::function<bool(double)>& holds, const std::string& wrong)
 {
   return [=](const std::string& text)
@@ -81,9 +81,9 @@ void requireValues(const Option& option)
   if (count < option.least || count > option.most)
   {
     throw InputError(
-        shown + ": At " +
-        (count < option.least ? "least " + std::to_string(option.least) : "Most " + std::to_string(option.most)) +
-        " required but received " + std::to_string(count));
+        shown + ": the number of values must be at " +
+        (count < option.least ? "least " + std::to_string(option.least) : "most " + std::to_string(option.most)) +
+        ", but is " + std::to_string(count));
   }
 }
 }  // namespace
@@ -126,7 +126,7 @@ Option& Option::choice(const std::vector<std::string>& names)
       [=](const std::string& text)
       {
         const bool good = std::find(names.begin(), names.end(), text) != names.end();
-        return good ? "" : text + " not in " + all;
+        return good ? "" : text + " is not one of " + all;
       });
 }
 
@@ -254,7 +254,7 @@ void OptionTable::oneOf(const std::vector<std::string>& names)
   alternatives.push_back(names);
   for (const std::string& name : names)
   {
-    find(name)->heading = "Exactly one of these is required";
+    find(name)->heading = "Exactly one of these options is required";
   }
 }
 
@@ -327,7 +327,7 @@ void addOptions(OptionTable& table, ConfigurationOptions& options)
       .group(COMMON_GROUP);
   table
       .add("--set", options.assignments,
-           "value of one parameter, which replaces that of all files; repeatable, later ones win")
+           "value of one parameter, which replaces its value in all files; repeatable, later values win")
       .type("section.key=value")
       .group(COMMON_GROUP);
   table.add("--config-dir", options.config_dir, "directory of the default configuration [or HJT_CONFIG_DIR]")
@@ -345,7 +345,7 @@ void addFaultOption(OptionTable& table, ConfigurationOptions& options)
 {
   table
       .add("--fault", options.faults,
-           "fault of the gear in addition to the configured ones, see `joint_twin faults`; repeatable")
+           "fault of the gear in addition to the configured faults (list: `joint_twin faults`); repeatable")
       .type("KIND:SEVERITY[:PLACE[:ONSET]]");
 }
 
@@ -402,7 +402,7 @@ void addFaults(const ConfigurationOptions& options, Parameters& parameters)
   }
   if (parameters.faults.size() > MAX_FAULTS)
   {
-    throw ParameterError("--fault: more than " + std::to_string(MAX_FAULTS) + " faults");
+    throw ParameterError("--fault: more than " + std::to_string(MAX_FAULTS) + " faults, with the configured faults");
   }
 }
 

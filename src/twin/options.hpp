@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// One option or argument of a function: a row of its table with the rules for its values. Each call adds a rule. The
-/// option also holds the given values.
+/// Option or argument of a function, with the rules for its values and the given values. Each call of a member adds a
+/// rule.
 struct Option
 {
   enum class Kind
@@ -26,37 +26,37 @@ struct Option
     TEXT
   };
   using Take = std::function<void(const std::string&)>;
-  /// Returns the error of a text; empty if there is none.
+  /// Function that returns the error of a given text; empty if the text is right.
   using Check = std::function<std::string(const std::string&)>;
   static constexpr std::size_t ANY = std::numeric_limits<std::size_t>::max();
 
   Option& required();
-  Option& type(const char* text);  ///< type of the value in the help
+  Option& type(const char* text);  ///< sets the type of the value that the help shows
   Option& group(const char* text);
   Option& range(double lowest, double highest);
   Option& positive();
   Option& choice(const std::vector<std::string>& names);
-  Option& pair();                                           ///< requires two values, separated by a comma
-  Option& endsIn(const std::vector<std::string>& endings);  ///< requires one of these endings of the file's name
+  Option& pair();                                           ///< requires two values with a comma between them
+  Option& endsIn(const std::vector<std::string>& endings);  ///< requires a file name with one of these endings
   Option& existingFile();
   Option& existingDirectory();
   Option& needs(const char* option);
-  Option& follow();  ///< for a list: several values may follow one name
+  Option& follow();  ///< allows that several values follow the option's name; for a list
   Option& check(const Check& wrong);
 
   bool isArgument() const { return name.front() != '-'; }
 
-  std::string name;  ///< with leading dashes for an option, without for an argument
+  std::string name;  ///< name, for an option with leading dashes
   std::string help;
-  std::string heading;  ///< heading of its group in the help
+  std::string heading;  ///< heading of the option's group in the help
   Kind kind{ Kind::FLAG };
-  std::string value_type{};    ///< type of the value in the help
-  std::string allowed{};       ///< allowed values, after the type in the help
-  std::string default_text{};  ///< default in the help
-  std::size_t least{};         ///< least number of values, if the option is given
-  std::size_t most{};          ///< largest number of values; zero: the option is a flag
-  bool commas{};               ///< commas separate the values, and values may follow one name
-  bool follows{};              ///< several values may follow one name
+  std::string value_type{};    ///< type of the value that the help shows
+  std::string allowed{};       ///< allowed values, which the help shows after the type
+  std::string default_text{};  ///< default that the help shows
+  std::size_t least{};         ///< least number of values of a given option
+  std::size_t most{};          ///< largest number of values; 0: the option is a flag
+  bool commas{};               ///< whether commas separate the values
+  bool follows{};              ///< whether several values may follow the option's name
   bool is_required{};
   std::vector<std::string> needed{};  ///< other options that the option requires
   std::vector<Check> checks{};        ///< checks of each value
@@ -64,12 +64,12 @@ struct Option
 
   bool given{};
   std::vector<std::string> values{};
-  std::string shown{};  ///< name in errors about the values; empty: `name`
+  std::string shown{};  ///< name that errors about the values show; empty: `name`
 };
 
-/// The options of a function with the fields that they set. The command line, its help and the keyword arguments of
-/// Python derive from this table. Names with leading dashes are options, others arguments. Numbers must be finite. The
-/// value of a field at its declaration is the default in the help.
+/// Options of a function with the fields that they set. The command line, its help and the keyword arguments of Python
+/// derive from this table. A name with leading dashes is that of an option, another name that of an argument. Numbers
+/// must be finite. The help shows the present value of a field as the default.
 struct OptionTable
 {
   Option& add(const char* name, double& field, const std::string& help);
@@ -81,61 +81,62 @@ struct OptionTable
   Option& add(const char* name, std::vector<double>& field, const std::string& help);  ///< values separated by commas
   Option& add(const char* name, std::vector<std::string>& field, const std::string& help);  ///< one or more values
   Option& flag(const char* name, bool& field, const std::string& help);
-  /// Adds an option whose values are passed to `take`.
+  /// Adds an option. The table passes each value of the option to `take`.
   Option& add(const std::string& name, Option::Kind kind, const Option::Take& take, const std::string& help);
 
-  /// Requires one of these options.
+  /// Requires exactly one of these options.
   void oneOf(const std::vector<std::string>& names);
 
   Option* find(const std::string& name);
 
-  /// Stores the given values in their fields. @throws InputError if a rule is violated.
+  /// Stores the given values in the fields of the options. @throws InputError if a value or an option violates a rule.
   void take();
 
   std::list<Option> options;
-  std::vector<std::vector<std::string>> alternatives;  ///< groups of options, one of each of which is required
+  std::vector<std::vector<std::string>> alternatives;  ///< groups of options; each group requires exactly one
 
 private:
   bool isGiven(const std::string& name);
   void checkTogether();
 };
 
-/// Options that select the parameters: the default configuration and its changes.
+/// Options that select the parameters: directory of the default configuration, and changes of it.
 struct ConfigurationOptions
 {
-  std::string config_dir;                ///< directory of the default configuration; empty: found automatically
-  std::vector<std::string> configs;      ///< overlay files; later ones win
-  std::vector<std::string> assignments;  ///< section.key=value, which replace values of the overlays
-  std::vector<std::string> faults;       ///< KIND:SEVERITY[:PLACE[:ONSET]], in addition to the configured faults
-  ParameterMap values;                   ///< values that replace all others
+  std::string config_dir;                ///< directory of the default configuration; empty: see configDirectory
+  std::vector<std::string> configs;      ///< overlay files; values of later files win
+  std::vector<std::string> assignments;  ///< section.key=value; these values replace those of the overlays
+  std::vector<std::string> faults;       ///< KIND:SEVERITY[:PLACE[:ONSET]]: faults in addition to the configured faults
+  ParameterMap values;                   ///< values that replace those of overlays and assignments
 
-  /// Whether at most faults change the default configuration.
+  /// Whether these options leave all parameters except the faults at their defaults.
   bool isDefault() const { return configs.empty() && assignments.empty() && values.empty(); }
 };
 
 constexpr const char* COMMON_GROUP = "Common options";
 
-/// Adds the options for files and assignments; Python has the argument `overlays` instead.
+/// Adds the options for overlay files and assignments. The functions of Python have the argument `overlays` in their
+/// place.
 void addOptions(OptionTable& table, ConfigurationOptions& options);
-/// Adds these options and the one that allows overwriting files.
+/// Adds the options for overlay files and assignments, and the option that allows overwriting files.
 void addOptions(OptionTable& table, ConfigurationOptions& options, bool& force);
 
-/// Adds `--fault`, for functions that simulate or analyse the joint.
+/// Adds the option `--fault`, for functions that simulate or analyse the joint.
 void addFaultOption(OptionTable& table, ConfigurationOptions& options);
 
 /// Directory of the default configuration. @throws ParameterError if there is none.
 std::filesystem::path configDirectory(const ConfigurationOptions& options);
 
-/// Steps of loadParameterMap: the default configuration; one overlay, as given or relative to it; those of the options.
-/// @throws ParameterError.
+/// Steps of loadParameterMap. They read the default configuration, read an overlay (as given or relative to the default
+/// configuration's directory), and add the overlays, assignments and values of the options. @throws ParameterError.
 ParameterMap defaultParameterMap(const ConfigurationOptions& options);
 void readOverlay(const ConfigurationOptions& options, const std::string& name, ParameterMap& map);
 void addOverlays(const ConfigurationOptions& options, ParameterMap& map);
 
-/// The default configuration, changed by overlays, assignments and values. @throws ParameterError.
+/// Default configuration, changed by the overlays, assignments and values of the options. @throws ParameterError.
 ParameterMap loadParameterMap(const ConfigurationOptions& options);
 
-/// Adds the faults of the options to the configured ones. @throws ParameterError.
+/// Adds the faults of the options to the configured faults. @throws ParameterError.
 void addFaults(const ConfigurationOptions& options, Parameters& parameters);
 
 /// Checked parameters with the faults of the options. @throws ParameterError.

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// A counter of steps with its name in records and in Python.
+/// Counter of TwinCounters with its name in records and in Python.
 struct StepCounter
 {
   const char* name;

@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Copies the forces of a ring. Those of tooth i become those of tooth i + `shift`, turned by as many pitches.
+/// Copies forces and positions of a ring, turned by `shift` pitches: tooth i + `shift` gets the values of tooth i.
 inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces& out) noexcept
 {
   const RingModel& model = ring.model();
@@ -33,8 +33,8 @@ inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces&
   }
 }
 
-/// Copies the forces at the joint's present angles from the table of a gear with equal teeth. @returns false if the
-/// joint does not use such a table.
+/// Interpolates forces and positions of the teeth at the joint's present angles in a ToothResponse. @returns false if
+/// the joint does not use a surface with such a table.
 inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexcept
 {
   const ResponseSurface* surface = joint.surface();
@@ -42,7 +42,7 @@ inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexce
   {
     return false;
   }
-  // The order of ToothResponse::Quantity.
+  // These arrays are in the order of ToothResponse::Quantity.
   const std::array<double*, ToothResponse::QUANTITIES> arrays{
     out.wave_generator_force.data(), out.rim_tension.data(), out.bending_force.data(),
     out.mesh_force.data(),           out.tooth_x.data(),     out.tooth_y.data(),
@@ -51,10 +51,10 @@ inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexce
   return surface->table().teeth.at(now.wave_generator_angle, now.output_angle, arrays.data());
 }
 
-/// All teeth at the joint's present angles, for output.
+/// Ring at the joint's present angles, for the output of tooth forces.
 ///
-/// While the joint uses the response surface, its own ring stays at an earlier position. A second ring moves to the
-/// present angles instead, so that the output does not change the run. Only construction allocates.
+/// While the joint uses the response surface, the joint's ring stays at an earlier position. A second ring moves to the
+/// present angles, so that the output does not change the simulation. Only construction allocates.
 class ObservedRing
 {
 public:
@@ -66,14 +66,15 @@ public:
   /// Must be called after a reset of the joint or a change of its model.
   void restart() noexcept { started_ = false; }
 
-  /// The ring in equilibrium at the present angles; null without an equilibrium. Valid until the joint's next step.
+  /// Ring in equilibrium at the joint's present angles, valid until the joint's next step; null if there is no
+  /// equilibrium.
   const RingEquilibrium* at(const JointDynamics& joint) noexcept
   {
     if (!joint.onSurface())
     {
       return &joint.ring();
     }
-    // Starts from the joint's own ring, which is in equilibrium at an earlier position.
+    // The second ring starts from the joint's ring, which is in equilibrium at an earlier position.
     started_ = started_ || ring_.solveFrom(joint.ring().shape().points, joint.ring().position()).ok();
     return started_ && ring_.moveTo(joint.position()).ok() ? &ring_ : nullptr;
   }

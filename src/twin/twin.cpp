@@ -21,8 +21,8 @@ Twin::Twin(const Parameters& parameters, const SurfaceSource& surface_source)
   if (parameters.contact.law == ContactLaw::POLAR)
   {
     throw ParameterError(
-        "contact.law = polar has no potential energy, so that only the insertion analysis may use it; "
-        "allowed for the running twin: normal");
+        "contact.law = polar has no potential energy, so that only the analysis of the insertion can use it. "
+        "A running twin needs contact.law = normal");
   }
   if (const std::string jam = jamOf(parameters); !jam.empty())
   {
@@ -254,7 +254,7 @@ Twin::Impl::Impl(const Parameters& given, const SurfaceSource& surface_source)
   }
   if (!reset(0))
   {
-    throw ParameterError("the twin has no equilibrium at its start, with the faults that are active then (faults.*): " +
+    throw ParameterError("the twin has no equilibrium with the faults that are active at its start (faults.*): " +
                          explanationOf(stepper.status()));
   }
 }
@@ -269,7 +269,7 @@ std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
 
 bool Twin::Impl::reset(Stamp stamp) noexcept
 {
-  static_cast<void>(stepper.useSurface(nullptr));  // the ring is inserted again without the surface
+  static_cast<void>(stepper.useSurface(nullptr));  // this ring need not be valid, because it is inserted anew
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();
@@ -302,7 +302,7 @@ bool Twin::Impl::reset(Stamp stamp) noexcept
   return settled;
 }
 
-/// Activates the configured faults of the start and schedules the others.
+/// Activates the configured faults without an onset and schedules the other configured faults.
 void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
 {
   active.clear();
@@ -320,7 +320,7 @@ void Twin::Impl::scheduleConfigured(Stamp stamp) noexcept
   }
 }
 
-/// Activates or removes the faults that are due. @returns false if the ring has no equilibrium with them.
+/// Activates or removes the faults that are due. @returns false if the ring has no equilibrium with the new faults.
 bool Twin::Impl::takeFaults() noexcept
 {
   const std::uint64_t version = active.version();
@@ -341,7 +341,7 @@ bool Twin::Impl::takeFaults() noexcept
   return useSurface() && good;
 }
 
-/// Applies the inputs of the step from `begin` to now, each from its stamp on.
+/// Applies the inputs with stamps in the step from `begin` to `now`, each from its stamp on.
 void Twin::Impl::takeInputs(Stamp begin) noexcept
 {
   motor_torque.begin(begin);
@@ -355,13 +355,13 @@ void Twin::Impl::takeInputs(Stamp begin) noexcept
   while (queue.pop(now - 1, input))
   {
     Stamp& since = in_force_since[static_cast<std::size_t>(input.kind)];
-    if (input.stamp >= since)  // otherwise the input is late and a newer one already acts
+    if (input.stamp >= since)  // false for a late input if a newer input already acts
     {
       since = input.stamp;
       takeInput(input, std::max(input.stamp, begin));
     }
   }
-  timeOutCommand(begin);  // for a command that arrived too late
+  timeOutCommand(begin);  // a command that arrived late can already be too old
 }
 
 void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
@@ -391,11 +391,11 @@ void Twin::Impl::takeInput(const Input& input, Stamp at) noexcept
   }
 }
 
-/// Sets a command to zero that is older than the timeout at the step's beginning.
+/// Sets the commanded torque to zero if the command is older than input.command_timeout at the beginning of the step.
 void Twin::Impl::timeOutCommand(Stamp begin) noexcept
 {
   const Stamp since = in_force_since[static_cast<std::size_t>(InputKind::MOTOR_TORQUE)];
-  // The age of a command with the earliest stamp would overflow in the other form of this comparison.
+  // The difference begin - since would overflow for a command with the earliest possible stamp.
   if (commanded && since < begin - toStampLength(parameters.input.command_timeout))
   {
     commanded = false;
@@ -436,7 +436,7 @@ void Twin::Impl::step() noexcept
   observe();
 }
 
-/// Executes the last command of the brake at the first instant after its delay.
+/// Executes the last command of the brake at the first instant after brake.delay.
 void Twin::Impl::moveBrake(Stamp begin) noexcept
 {
   if (brake_commanded != brake_engaged && begin >= brake_moves)
@@ -466,7 +466,7 @@ void Twin::Impl::resetHeat() noexcept
   }
 }
 
-/// Adds the losses of a step. They warm the drive at the end of each heat period, counted from the epoch.
+/// Adds the losses of a step. At the end of each DriveHeat::PERIOD (counted from time 0) the losses warm the drive.
 void Twin::Impl::takeHeat(double motor_torque) noexcept
 {
   if (!heat)
@@ -514,7 +514,7 @@ JointOutputs Twin::Impl::outputs() const noexcept
   return outputs;
 }
 
-/// Updates sensors and health at every step.
+/// Updates sensors and health after a step.
 void Twin::Impl::observe() noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();
@@ -528,7 +528,7 @@ void Twin::Impl::observe() noexcept
   assessor.advance(searched_per_step);
 }
 
-/// Passes on the signals that a drive knows: readings, received load, temperature at the motor.
+/// Passes the signals that a real drive has to the health monitor: readings, received load, temperature of the housing.
 void Twin::Impl::takeReadings() noexcept
 {
   const EncoderReadings readings = sensors.encoders();

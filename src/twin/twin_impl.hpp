@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// A torque that inputs set, constant between their stamps. Its mean acts over a step.
+/// Torque that inputs set at their stamps and that is constant between them. Over a step its mean acts.
 class HeldTorque
 {
 public:
@@ -34,19 +34,19 @@ public:
     value_ = value;
   }
   double value() const noexcept { return value_; }  ///< present value [N.m]
-  double mean(Stamp end) const noexcept             ///< mean from the step's beginning to `end` [N.m]
+  double mean(Stamp end) const noexcept             ///< mean from the beginning of the step to `end` [N.m]
   {
     return from_ == begin_ ? value_ : (sum_ + value_ * toSeconds(end - from_)) / toSeconds(end - begin_);
   }
 
 private:
   double value_{};
-  double sum_{};  // integral up to from_ [N.m.s]
+  double sum_{};  // integral over the time from begin_ to from_ [N.m.s]
   Stamp begin_{};
-  Stamp from_{};  // time in this step from which the present value acts
+  Stamp from_{};  // time in the step from which the present value acts
 };
 
-/// The parts of the twin and the sequence of its steps.
+/// Parts of a twin, and the actions of a step.
 struct Twin::Impl
 {
   Impl(const Parameters& given, const SurfaceSource& surface_source);
@@ -55,7 +55,7 @@ struct Twin::Impl
 
   static Stamp delayOf(const Fault& fault) noexcept { return static_cast<Stamp>(std::llround(1e9 * fault.onset)); }
 
-  /// @returns false if the joint has no equilibrium.
+  /// See Twin::reset. @returns false if the joint has no equilibrium.
   bool reset(Stamp stamp) noexcept;
   const JointModel& model() const noexcept { return faults.model(); }
   void step() noexcept;
@@ -67,51 +67,52 @@ struct Twin::Impl
   JointFaults faults;
   FaultList active;
   FaultSchedule waiting;
-  SurfaceStages stages;      // if the twin waits for its surfaces
-  FaultList surface_faults;  // faults of the requested surface, if the twin does not wait
+  SurfaceStages stages;      // surfaces that were built before the start
+  FaultList surface_faults;  // faults of the surface that surface_worker was last asked for
   std::optional<SurfaceWorker> surface_worker;
   bool surface_awaited{};
   JointStepper stepper;
   ObservedRing observed_ring;
   Stamp step_length;
-  std::int64_t instant{};  // number of the present instant since the epoch
+  std::int64_t instant{};  // number of the present instant: its time over step_length
   Stamp now{};
-  // an input with an earlier stamp is late: the present instant, or the start if that is not a multiple of the step
+  // An input with an earlier stamp is late. This is the present instant or, before the first step, the stamp of the
+  // reset.
   Stamp simulated_until{};
   InputQueue queue;
-  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the acting input, by kind
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // for each kind the stamp of the acting input
   TwinCounters counters;
   HeldTorque motor_torque;  // commanded torque, limited to the motor's limit
-  bool command_clamped{};   // the motor's limit reduced the command
-  bool commanded{};         // a command acts that has not timed out
-  HeldTorque load_torque;   // limited external torque
+  bool command_clamped{};   // whether motor.torque_limit reduced the command
+  bool commanded{};         // whether a command acts that has not timed out
+  HeldTorque load_torque;   // external torque, limited to output.load_torque_limit
   bool load_clamped{};
-  double arm_torque{};   // torque of a coupled arm without its inertia [N.m]
+  double arm_torque{};   // torque of a coupled arm, see Twin::coupleArm [N.m]
   double temperature{};  // received or configured temperature of the drive or its surroundings [degC]
   std::optional<DriveHeat> heat;
-  Stamp heat_stamp{};    // end of the losses that it contains
-  double heat_booked{};  // part of the dissipated energy that it contains [J]
-  double copper_heat{};  // copper losses that it does not contain yet [J]
+  Stamp heat_stamp{};    // time up to which `heat` contains the losses
+  double heat_booked{};  // dissipated energy that `heat` contains [J]
+  double copper_heat{};  // copper losses that `heat` does not yet contain [J]
   bool brake_engaged{};
   bool brake_commanded{};
-  Stamp brake_moves{};  // time at which the command is executed
+  Stamp brake_moves{};  // time at which the brake executes its command
   bool converged{ true };
   JointSensors sensors;
   HealthMonitor monitor;
   SignalMonitor signals;
   Assessor assessor;
   Stamp steps_per_sample;
-  static constexpr double CAUSE_SEARCH_TIME = 0.05;  // half the shortest window [s]
-  std::size_t searched_per_step;                     // number of signatures
+  static constexpr double CAUSE_SEARCH_TIME = 0.05;  // duration of a search: half the shortest window [s]
+  std::size_t searched_per_step;                     // number of signatures that a search compares in a step
   Stamp steps_per_heat;
-  bool watching{};               // indicators are computed from the readings
-  Eigen::VectorXd tooth_angles;  // angles at rest [rad]
+  bool watching{};               // see Twin::watchSignals
+  Eigen::VectorXd tooth_angles;  // angle of each tooth at rest [rad]
   Stamp last_failed{};           // instant of the last step that did not converge; initially the earliest stamp
-  // instant of the last step that was cut, too long, or with a jump of a tooth; initially the earliest stamp
+  // instant of the last step that was cut or too long, or in which a tooth jumped; initially the earliest stamp
   Stamp last_doubtful{};
 
 private:
-  Impl(const Impl&) = default;  // the parts of the copy refer to the other's model, see copyOf
+  Impl(const Impl&) = default;  // leaves pointers to the model of the original, see copyOf
 
   void prepareSurface(const SurfaceSource& source);
   const ResponseSurface* presentSurface() const noexcept;

@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Thrown in the progress callback to end the build.
+/// Exception by which the progress callback ends the build of a surface.
 struct GivenUp : std::exception
 {
 };
@@ -47,8 +47,9 @@ bool hasBearingFaults(const FaultList& faults) noexcept
                      [](const ActiveFault& active) { return isOfTheBalls(active.fault); });
 }
 
-/// Finds the only fault that changes from one list to the next, with its later severity. @returns false if several
-/// change, or if the fault is one of the bearing, whose table serves for all severities.
+/// Finds the only fault that changes from the list `before` to the list `after`. `growing` receives the fault with its
+/// severity in `after`. @returns false if several faults change, or if `after` has a fault of the bearing, whose table
+/// holds for all severities.
 bool grows(const FaultList& before, const FaultList& after, Fault& growing)
 {
   for (const FaultList* list : { &after, &before })
@@ -66,7 +67,7 @@ bool grows(const FaultList& before, const FaultList& after, Fault& growing)
   return false;
 }
 
-/// Weights at `x` of Lagrange's polynomial through these nodes.
+/// Weights of the values at `places` in the value of Lagrange's polynomial at `x` [-].
 std::vector<double> lagrangeWeights(const std::vector<double>& places, double x)
 {
   std::vector<double> weights(places.size(), 1.0);
@@ -137,7 +138,7 @@ void SurfaceWorker::run()
     {
       obtain(taken, faults);
     }
-    catch (const std::exception&)  // the thread must not throw; even the notice failed
+    catch (const std::exception&)  // an exception of the notice, which must not leave the thread
     {
       surface_ = nullptr;
     }
@@ -188,7 +189,7 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
 {
   if (!source.pool)
   {
-    // Growing faults of the bearing share the tables of gear and balls.
+    // With a pool, all severities of a fault of the bearing share the tables of gear and balls.
     source.pool = std::make_shared<SurfacePool>(2);
   }
   parameters_ = &parameters;
@@ -202,7 +203,7 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
     if (last - i > NODES)
     {
       interpolate(i, last, growing);
-      i = last - 1;  // which another growth may begin with
+      i = last - 1;  // another growth can begin at stage `last`
     }
     else if (few || i == 0 || i + 1 == stages_.size())
     {
@@ -216,20 +217,20 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
   if (left_out > 0 && source.notice)
   {
     source.notice(std::to_string(left_out) + " of " + std::to_string(stages_.size()) +
-                  " sets of faults have no response surface: the twin solves the full ring while they set in");
+                  " sets of faults have no response surface. The twin solves the full ring while such a set is active");
   }
   parameters_ = nullptr;
   source_ = nullptr;
 }
 
-/// The sets of faults in order of time. @returns how many tables of the gear they would need.
+/// Lists the sets of faults in the order of time. @returns the number of tables of the gear that these sets would need.
 int SurfaceStages::list(const FaultList& active, FaultSchedule later)
 {
   stages_.clear();
   FaultList faults = active;
   Stamp since = 0;
   int tables = 0;
-  bool is_another = true;  // table of the gear
+  bool is_another = true;  // whether the set needs another table of the gear
   for (bool more = true; more;)
   {
     Fault fault;
@@ -259,7 +260,8 @@ void SurfaceStages::obtain(Stage& stage)
   }
 }
 
-/// The last stage that the same fault has alone grown to from this one on; this one: none has.
+/// Index of the last stage up to which a single fault grows from the stage `first` on, while all other faults stay. The
+/// result is `first` if no fault grows. `growing` receives the fault.
 std::size_t SurfaceStages::endOfGrowth(std::size_t first, Fault& growing) const
 {
   std::size_t last = first;
@@ -273,7 +275,8 @@ std::size_t SurfaceStages::endOfGrowth(std::size_t first, Fault& growing) const
   return last;
 }
 
-/// Tables of some stages, sums of them for those between. The ends first: of a gear whose teeth differ fewer are built.
+/// Obtains tables for some stages of a growth, and weighted sums of tables for the stages between. The tables of the
+/// first and last stage come first, because they show whether the teeth differ, so that fewer tables are built.
 void SurfaceStages::interpolate(std::size_t first, std::size_t last, const Fault& growing)
 {
   obtain(stages_[first]);
@@ -321,7 +324,8 @@ const ResponseSurface* SurfaceStages::of(const FaultList& faults) const noexcept
   return stage != stages_.end() ? stage->surface.get() : nullptr;
 }
 
-/// The surfaces of the drive with its configured faults, or a thread that obtains that of the present ones.
+/// Obtains the surfaces of the drive with its configured faults, or starts a thread that obtains the surface of the
+/// drive with the active faults.
 void Twin::Impl::prepareSurface(const SurfaceSource& source)
 {
   if (source.background)
@@ -335,7 +339,7 @@ void Twin::Impl::prepareSurface(const SurfaceSource& source)
   }
 }
 
-/// That of the faults that are active, if it is there.
+/// Surface of the drive with the active faults; null if there is none or it is not ready.
 const ResponseSurface* Twin::Impl::presentSurface() const noexcept
 {
   if (surface_worker)
@@ -345,7 +349,8 @@ const ResponseSurface* Twin::Impl::presentSurface() const noexcept
   return stages.of(active);
 }
 
-/// The surface while it is that of the present faults; else the full ring, until one is there that was built beside.
+/// Makes the joint use the surface of the active faults or, while there is none, the full ring. @returns false if the
+/// full ring has no equilibrium.
 bool Twin::Impl::useSurface() noexcept
 {
   const ResponseSurface* present = presentSurface();
@@ -353,7 +358,8 @@ bool Twin::Impl::useSurface() noexcept
   return stepper.useSurface(present);
 }
 
-/// The surface of the present faults, built in the background: requested, and used when ready.
+/// If the twin waits for a surface from the background, requests the surface of the active faults, and uses it when it
+/// is ready. @returns false if the full ring has no equilibrium.
 bool Twin::Impl::takeSurface() noexcept
 {
   if (!surface_awaited)

@@ -15,26 +15,26 @@
 
 namespace hjt
 {
-/// Builds or reads response surfaces in a separate thread while the twin runs.
+/// Thread that builds or reads response surfaces while the twin runs.
 class SurfaceWorker
 {
 public:
-  /// Starts the thread with the first request.
+  /// Starts the thread and requests the surface of the drive with `faults`.
   SurfaceWorker(const Parameters& parameters, const FaultList& faults, const SurfaceSource& source);
 
-  /// Shares the other's surface if it is ready; otherwise the new thread obtains it. Call it in the thread that calls
-  /// `request`.
+  /// Shares the surface of `other` if it is ready. If it is not ready, the new thread obtains the surface again. Must
+  /// be called in the thread that calls `request`.
   SurfaceWorker(const SurfaceWorker& other);
 
-  /// Abandons an unfinished surface.
+  /// Ends the thread. A surface that is not finished is lost.
   ~SurfaceWorker();
 
-  /// Requests the surface of the drive with these faults. It replaces the last surface, which must not be in use.
-  /// @returns false if the thread is busy; then the caller must request again. The function neither blocks nor
-  /// allocates.
+  /// Requests the surface of the drive with these faults. The new surface replaces the last surface, which must not be
+  /// in use. @returns false if the thread is busy; the caller must then request again. The function does not block or
+  /// allocate.
   bool request(const FaultList& faults) noexcept;
 
-  /// The last requested surface; null if it is not ready or does not exist. The function neither blocks nor allocates.
+  /// Last requested surface; null if it is not ready or does not exist. The function does not block or allocate.
   const ResponseSurface* surface() const noexcept { return isDone() ? surface_.get() : nullptr; }
 
 private:
@@ -48,7 +48,7 @@ private:
   const Parameters parameters_;
   const SurfaceSource source_;
   std::mutex mutex_;
-  FaultList faults_;  // of the last request
+  FaultList faults_;  // faults of the last request
   SurfacePool::Surface surface_;
   std::atomic<std::uint64_t> asked_{ 1 };  // number of requests
   std::atomic<std::uint64_t> done_{ 0 };   // number of the request that surface_ belongs to
@@ -57,26 +57,26 @@ private:
   std::thread thread_;
 };
 
-/// Whether both lists have equal faults with equal severities, whatever their times.
+/// Whether two lists have equal faults with equal severities. The times of the faults may differ.
 bool isSame(const FaultList& one, const FaultList& other) noexcept;
 
-/// Response surfaces of a twin that waits for them: one for each set of faults between the onsets of the configured
-/// faults. Each table except the first and the last takes a build. With many sets, a fault that grows in more than
-/// NODES steps has tables at some severities and cubic interpolation in the severity between them. Other sets have no
-/// surface.
+/// Response surfaces of a twin that waits for them before it starts. Each onset of a configured fault begins a new set
+/// of active faults (stage). If the sets need at most MAX_TABLES tables, every set has a surface. If they need more,
+/// only some sets have one: the first and the last set, and those in which a fault grows in more than NODES steps. Such
+/// a fault has tables at some severities and cubic interpolation between them.
 class SurfaceStages
 {
 public:
-  /// `later`: faults that set in after `active`.
+  /// Obtains the surfaces. `active`: faults at the start; `later`: faults that set in later.
   void prepare(const Parameters& parameters, const FaultList& active, FaultSchedule later, SurfaceSource source);
 
   /// Surface for a set of faults; null if there is none.
   const ResponseSurface* of(const FaultList& faults) const noexcept;
 
 private:
-  static constexpr int MAX_TABLES = 4;     // with more tables, those between the first and the last are not built
-  static constexpr std::size_t NODES = 8;  // intervals of a growth for a gear with equal teeth
-  // intervals of a growth if the teeth differ, because each table takes several times as long
+  static constexpr int MAX_TABLES = 4;     // largest number of tables of the gear for surfaces of all sets
+  static constexpr std::size_t NODES = 8;  // number of intervals between tables of a growth if the teeth are equal
+  // number of these intervals if the teeth differ: fewer, because each table takes several times as long
   static constexpr std::size_t FEW_NODES = 4;
 
   struct Stage
@@ -91,7 +91,7 @@ private:
   void interpolate(std::size_t first, std::size_t last, const Fault& growing);
 
   std::vector<Stage> stages_;
-  const Parameters* parameters_{};  // set during preparation
+  const Parameters* parameters_{};  // null except within `prepare`
   const SurfaceSource* source_{};
 };
 }  // namespace hjt

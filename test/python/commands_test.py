@@ -370,7 +370,7 @@ class Errors(Recordings):
                 (lambda: hjt.remaining("a.csv", hours=0.0), "hours = 0"),
                 (lambda: hjt.checkup("ur5", "a.csv", joint="knee"), "has no joint 'knee'", hjt.ParameterError),
                 (lambda: hjt.checkup("ur6", "a.csv"), "neither a file nor an arm", hjt.ParameterError),
-                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), "file_format = 'txt': txt not in {csv,"),
+                (lambda: hjt.checkup("ur5", "a.csv", file_format="txt"), "format = 'txt': txt is not one of {csv,"),
                 (lambda: hjt.sweep("no_plan.yaml", "data"), "no_plan.yaml"),
                 (lambda: hjt.sweep("no_plan.yaml", "data", jobs=0), "jobs = 0"),
                 (lambda: hjt.sweep("no_plan.yaml", "data", shard=(2, 2)), "'2/2' must be I/N with"),

@@ -72,7 +72,8 @@ class Options(tool.ToolTest):
                 ("--angle: 'nan' is not a finite number", [*stiffness, "5", "--angle", "nan"]),
                 ("--angle: '1e400' is not a finite number", [*stiffness, "5", "--angle", "1e400"]),
                 ("--angle: 1 required FLOAT missing", [*stiffness, "5", "--angle", "--json"]),
-                ("--angle: At Most 1 required but received 2", [*stiffness, "5", "--angle", "1", "--angle", "2"]),
+                ("--angle: the number of values must be at most 1, but is 2",
+                 [*stiffness, "5", "--angle", "1", "--angle", "2"]),
                 ("--json does not take a value", [*stiffness, "5", "--json=no"]),
                 ("--hours: '0' is not within 0.001 ... 1e+09", [*age, "--hours", "0"]),
                 ("--positions: '1.5' is not a whole number within -2147483648 ... 2147483647",
@@ -88,9 +89,9 @@ class Options(tool.ToolTest):
                 ("--joint: '6' is not a joint; the joints are base, shoulder, elbow, wrist_1, wrist_2, wrist_3, or 0 "
                  "to 5",
                  ["import", "a.csv", "--joint", "6", "--out", "a.bag"]),
-                ("--format: foo not in {urdf,sdf,mjcf,fmu,fmu2}", ["export", "--format", "foo"]),
-                ("--train: At least 2 required but received 1", [*PAIR, "1"]),
-                ("--train: At Most 2 required but received 3", [*PAIR, "1,2,3"]),
+                ("--format: foo is not one of {urdf,sdf,mjcf,fmu,fmu2}", ["export", "--format", "foo"]),
+                ("--train: the number of values must be at least 2, but is 1", [*PAIR, "1"]),
+                ("--train: the number of values must be at most 2, but is 3", [*PAIR, "1,2,3"]),
                 ("--identified: Directory does not exist: none", ["identify", "a.bag", "--identified", "none"]),
                 ("--shard: 'x' must be I/N with 0 <= I < N", ["sweep", "plan.yaml", "--shard", "x"])]:
             with self.subTest(arguments):
@@ -152,7 +153,7 @@ class Options(tool.ToolTest):
                 (["remaining"], ["Usage: joint_twin remaining [OPTIONS] recordings...\n"]),
                 (["identify"], ["\n  --train FLOAT x 2           from,to: part to identify from",
                                 f"\n  --load TEXT:{{arm,target_moment}}=arm Needs: --arm{column}load of",
-                                "\nExactly one of these is required:\n  --joint TEXT                base"]),
+                                "\nExactly one of these options is required:\n  --joint TEXT                base"]),
                 (["life"], ["Usage: joint_twin life [OPTIONS] SUBCOMMAND\n",
                             "\nStudies of the model:\n  age                         the nominal drive"])]:
             text = self.succeed(*arguments, "--help").stdout

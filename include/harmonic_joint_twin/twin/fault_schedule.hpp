@@ -11,31 +11,31 @@
 
 namespace hjt
 {
-/// Counts of injected faults since the last reset.
+/// Numbers of injected faults since the last reset.
 struct FaultCounters
 {
-  std::uint64_t accepted{};  ///< faults that were queued
-  std::uint64_t refused{};   ///< faults whose severity, place or onset is out of range
-  std::uint64_t late{};      ///< faults with a stamp before the simulated instant; they set in at once
-  std::uint64_t no_room{};   ///< faults that were refused because too many wait or are active
+  std::uint64_t accepted{};  ///< faults that the twin queued
+  std::uint64_t refused{};   ///< refused faults, whose severity, place or onset is out of range
+  std::uint64_t late{};      ///< faults with a stamp before the simulated instant, which set in at once
+  std::uint64_t no_room{};   ///< faults that the twin refused because too many faults wait or are active
 };
 
-/// Faults that will set in or end, ordered by time; equal stamps keep their order of arrival. The storage has a fixed
-/// size.
+/// Faults that will set in or end, ordered by time. Faults with equal stamps stay in the order of their arrival. The
+/// storage has a fixed size.
 class FaultSchedule
 {
 public:
   static constexpr std::size_t CAPACITY = 2 * MAX_FAULTS;  ///< largest number of waiting faults
 
-  explicit FaultSchedule(const Parameters& parameters);  ///< allocates; the other members do not
+  explicit FaultSchedule(const Parameters& parameters);  ///< allocates; no other member allocates
 
   void clear() noexcept;  ///< removes all waiting faults
-  /// Queues a valid fault. @returns false if the schedule is full.
+  /// Queues a fault, which must be valid. @returns false if the schedule is full.
   bool push(const Fault& fault, Stamp stamp) noexcept;
-  /// Whether a fault has a stamp not after `instant`.
+  /// Whether any fault has a stamp that is not after `instant`.
   bool isDue(Stamp instant) const noexcept { return size_ > 0 && waiting_[size_ - 1].stamp <= instant; }
-  /// Takes the earliest fault that is due. @returns false if none is due. Drops a late fault if a newer one of its kind
-  /// and place was already taken.
+  /// Takes the earliest fault that is due. Drops a fault if a fault of its kind and place with a later stamp was taken
+  /// before. @returns false if no fault is due.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:
@@ -46,9 +46,9 @@ private:
   };
   Stamp& lastTaken(const Fault& fault) noexcept;
 
-  std::array<Waiting, CAPACITY> waiting_{};  // latest first
+  std::array<Waiting, CAPACITY> waiting_{};  // waiting faults, the latest first
   std::size_t size_{};
-  // stamp of the last fault taken, by kind and place, with the whole part first
+  // for each kind and place the stamp of the last taken fault; the first place stands for the whole part
   std::array<std::vector<Stamp>, FAULT_KINDS> last_taken_;
 };
 }  // namespace hjt

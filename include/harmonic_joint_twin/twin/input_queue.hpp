@@ -20,7 +20,7 @@ enum class InputKind : std::uint8_t
 };
 constexpr std::size_t INPUT_KINDS = 4;  ///< number of values of InputKind
 
-/// One stamped input of a twin.
+/// Input of a twin with its stamp.
 struct Input
 {
   Stamp stamp{};     ///< time from which the input acts [ns]
@@ -28,7 +28,7 @@ struct Input
   double value{};    ///< torque [N.m], temperature [degC], or 1 for an engaged brake
 };
 
-/// A fault with the time at which it sets in.
+/// Fault with the time at which it sets in.
 struct StampedFault
 {
   Stamp stamp{};  ///< time from which the fault is active [ns]
@@ -50,16 +50,16 @@ inline Stamp stampOf(const TwinInput& input) noexcept
   return fault != nullptr ? fault->stamp : std::get_if<Input>(&input)->stamp;
 }
 
-/// Counts of the queue's inputs since it was cleared.
+/// Numbers of inputs since the queue was cleared.
 struct InputCounters
 {
-  std::uint64_t accepted{};    ///< inputs that were queued, late ones included
+  std::uint64_t accepted{};    ///< inputs that were queued, with the late inputs
   std::uint64_t not_finite{};  ///< inputs that were refused because they are NaN or infinite
-  std::uint64_t late{};        ///< inputs with a stamp before the simulated instant; they act at once
-  std::uint64_t overflow{};    ///< inputs that were dropped because the queue was full; the queue drops the oldest
+  std::uint64_t late{};        ///< inputs with a stamp before the simulated instant, which act at once
+  std::uint64_t overflow{};    ///< inputs that were dropped because the queue was full; it drops the oldest input
 };
 
-/// Stamped inputs, ordered by time; equal stamps keep their order of arrival. The storage has a fixed size.
+/// Inputs, ordered by time. Inputs with equal stamps stay in the order of their arrival. The storage has a fixed size.
 class InputQueue
 {
 public:
@@ -68,16 +68,16 @@ public:
   void clear() noexcept;                              ///< removes all inputs and resets the counters
   bool empty() const noexcept { return size_ == 0; }  ///< whether no input waits
 
-  /// Queues an input. `now`: simulated instant; an input with an earlier stamp counts as late.
+  /// Queues an input. `now`: simulated instant. An input with a stamp before `now` counts as late.
   void push(const Input& input, Stamp now) noexcept;
 
-  /// Whether an input has a stamp not after `instant`.
+  /// Whether any input has a stamp that is not after `instant`.
   bool isDue(Stamp instant) const noexcept { return size_ > 0 && inputs_[first_].stamp <= instant; }
 
-  /// Takes the earliest input that is due. @returns false if none is due.
+  /// Takes the earliest input that is due. @returns false if no input is due.
   bool pop(Stamp instant, Input& input) noexcept;
 
-  const InputCounters& counters() const noexcept { return counters_; }  ///< counts since the last clear
+  const InputCounters& counters() const noexcept { return counters_; }  ///< numbers of inputs since the last clear
 
 private:
   std::array<Input, CAPACITY> inputs_{};
