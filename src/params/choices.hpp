@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Spelling of each choice in the configuration. The type of the enumeration selects the overload.
+/// Names of the values of an enumeration in the configuration. The type of the enumeration selects the overload.
 template <class Choice, std::size_t N>
 using ChoiceNames = std::array<std::pair<const char*, Choice>, N>;
 

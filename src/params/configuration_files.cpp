@@ -27,7 +27,7 @@ namespace
 {
 namespace fs = std::filesystem;
 
-/// File in the configuration's directory that lists the files of the default configuration.
+/// Name of the file that lists the files of the default configuration, in the directory of this configuration.
 constexpr const char* STAGES = "stages";
 
 fs::path findDirectory(const std::string& given)
@@ -54,7 +54,8 @@ fs::path libraryDirectory()
 fs::path packageDirectory()
 {
   // The executable PREFIX/lib/harmonic_joint_twin/joint_twin and the library PREFIX/lib/libharmonic_joint_twin_core.so
-  // belong to PREFIX/share/harmonic_joint_twin. In a development space its config is a link to that of the sources.
+  // belong to PREFIX/share/harmonic_joint_twin. In a development space, `config` there is a link to that of the
+  // sources.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path libraries = libraryDirectory();
@@ -66,9 +67,10 @@ fs::path packageDirectory()
       return config.parent_path();
     }
   }
-  throw ParameterError("no default configuration found: neither " + executable.string() + " nor " + libraries.string() +
-                       " is in an installation or development space of harmonic_joint_twin; give the configuration's "
-                       "directory with --config-dir or HJT_CONFIG_DIR");
+  throw ParameterError("no default configuration found, because neither " + executable.string() + " nor " +
+                       libraries.string() +
+                       " is in an installation or development space of harmonic_joint_twin. Give the directory of the "
+                       "configuration with --config-dir or HJT_CONFIG_DIR");
 }
 
 fs::path configurationDirectory(const std::string& given)
@@ -77,7 +79,7 @@ fs::path configurationDirectory(const std::string& given)
   if (!fs::exists(directory / STAGES))
   {
     throw ParameterError("no default configuration in '" + directory.string() +
-                         "'; give its directory with --config-dir or HJT_CONFIG_DIR");
+                         "'. Give the directory of the configuration with --config-dir or HJT_CONFIG_DIR");
   }
   return fs::absolute(directory);
 }
@@ -116,7 +118,7 @@ namespace
 {
 using Value = decltype(ParameterValue::value);
 
-/// Whether PyYAML reads the text as a number that a user rarely means: octal, hexadecimal, binary, 1_000, 1:30.
+/// Whether PyYAML reads the text as a number that a user hardly meant: octal, hexadecimal, binary, 1_000 or 1:30.
 bool isTreacherous(const std::string& text)
 {
   static const std::regex NUMBER(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
@@ -129,7 +131,7 @@ bool isOneOf(const std::string& text, std::initializer_list<const char*> spellin
   return std::find(spellings.begin(), spellings.end(), text) != spellings.end();
 }
 
-/// The number in "deg(...)", rosparam's extension for angles in degrees.
+/// Number in "deg(...)", rosparam's notation for an angle in degrees.
 std::optional<double> degrees(const std::string& text)
 {
   const std::string begin = "deg(";
@@ -148,8 +150,8 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// Value of an unquoted text. The rules are those of rosparam, except that every decimal number is a number: rosparam
-/// reads 1e-6 as a text.
+/// Value of an unquoted text by the rules of rosparam, except that every decimal number is a number. In rosparam 1e-6
+/// is a text.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
   if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))
@@ -158,7 +160,7 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
   }
   if (isTreacherous(text))
   {
-    fail(origin, key + " = " + text + ": write numbers in plain decimal digits, and put texts in quotes");
+    fail(origin, key + " = " + text + ": write a number in plain decimal digits, or put a text in quotes");
   }
   if (const auto number = decimalNumber(text))
   {
@@ -170,7 +172,7 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
     const std::int64_t value = std::strtoll(text.c_str(), nullptr, 10);
     if (errno == ERANGE)
     {
-      fail(origin, key + " = " + text + " does not fit an integer");
+      fail(origin, key + " = " + text + " is too large for a whole number");
     }
     return value;
   }
@@ -192,7 +194,7 @@ Value plainValue(const std::string& text, const std::string& origin, const std::
 
 Value scalarValue(const YAML::Node& node, const std::string& origin, const std::string& key)
 {
-  // yaml-cpp gives a quoted text the tag "!" and a plain one "?".
+  // In yaml-cpp a quoted text has the tag "!", and a plain text the tag "?".
   return parseScalar(node.Scalar(), node.Tag() == "!", key, origin).value;
 }
 
@@ -250,7 +252,7 @@ void readSection(const std::string& source, const std::string& section, const YA
   }
 }
 
-/// Reads the list of faults as FAULTS.N.key, N from 0. It replaces an earlier list.
+/// Reads the list of faults into the keys FAULTS.N.key, with N from 0.
 void readFaults(const std::string& source, const YAML::Node& list, ParameterMap& read)
 {
   int number = 0;
@@ -270,7 +272,7 @@ struct Document
 {
   std::string text;
   ParameterMap values;
-  bool has_faults{};  // the file has a list of faults, which may be empty
+  bool has_faults{};  // whether the file has a list of faults, which may be empty
 };
 
 Document readDocument(const std::string& source, const YAML::Node& root)
@@ -314,7 +316,7 @@ Document parsedDocument(const std::string& path, const std::string& text)
   }
   if (documents.size() != 1)
   {
-    fail(path, "expected one YAML document, found " + std::to_string(documents.size()));
+    fail(path, "the file must hold one YAML document, but holds " + std::to_string(documents.size()));
   }
   Document read = readDocument(path, documents.front());
   read.text = text;
@@ -344,7 +346,7 @@ void readYamlFile(const std::string& path, ParameterMap& map)
   {
     fail(path, "cannot be read: " + reason);
   }
-  // All joints of an arm, and all arms, read the same files.
+  // Keeps the content of files, because all joints of all arms read the same files.
   thread_local std::map<std::string, Document> known;
   Document& document = known[path];
   if (document.text != *text)
@@ -367,7 +369,7 @@ void readDefaultConfiguration(const std::string& directory, ParameterMap& map)
   std::ifstream file(list);
   if (!file)
   {
-    fail(list, "cannot be read: no default configuration there");
+    fail(list, "cannot be read, so that this directory has no default configuration");
   }
   for (std::string name; std::getline(file, name);)
   {

@@ -8,25 +8,25 @@
 
 namespace hjt
 {
-/// Directory of the library that contains this function.
+/// Directory of the shared library that contains this function.
 std::filesystem::path libraryDirectory();
 
-/// Directory with config/ and scripts/: that of the installation, or the sources of a development space.
-/// @throws ParameterError if the program is in neither.
+/// Directory with config/ and scripts/: that of the installation, or that of the sources in a development space.
+/// @throws ParameterError if the program is in neither of these two.
 std::filesystem::path packageDirectory();
 
-/// Directory of the default configuration: `given`, else HJT_CONFIG_DIR, else the package's.
-/// @throws ParameterError if there is none.
+/// Directory of the default configuration: `given` or, if empty, HJT_CONFIG_DIR or, if empty, that in packageDirectory.
+/// @throws ParameterError if this directory has no default configuration.
 std::filesystem::path configurationDirectory(const std::string& given);
 
-/// Finds a configuration file: the path as given, else relative to the default configuration. `config/x.yaml` and
-/// `joints/x.yaml` therefore work in any working directory.
+/// Finds a configuration file by its path as given or, if there is no such file, relative to the default configuration.
+/// `config/x.yaml` and `joints/x.yaml` therefore work in any working directory.
 std::string findConfiguration(const std::string& name, const std::filesystem::path& directory);
 
-/// Replaces the values of `map` by `values`.
+/// Adds `values` to `map`. They replace values of equal keys.
 void putOver(const ParameterMap& values, ParameterMap& map);
 
-/// Registers a default configuration that the process would not find itself, so that files named by parameters are
-/// found beside it.
+/// Completes the path of the file that indicators.signatures names relative to the default configuration in
+/// `directory`.
 void findNamedFiles(const std::filesystem::path& directory, ParameterMap& map);
 }  // namespace hjt

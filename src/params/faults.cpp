@@ -20,7 +20,7 @@ namespace
 {
 constexpr double LATEST_ONSET = 1e9;  // [s]
 
-/// Orders, per turn of the motor, at which parts of the drive repeat, by their names in FaultDescription::shows.
+/// Orders at which parts of the drive repeat, with their names in FaultDescription::shows.
 std::array<std::pair<const char*, double>, 6> orders(const Parameters& parameters)
 {
   const double balls = parameters.bearing.balls;
@@ -126,7 +126,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters)
 
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept
 {
-  // This form of the comparison rejects NaN.
+  // For NaN these comparisons are false.
   return static_cast<std::size_t>(fault.kind) < FAULT_KINDS && fault.severity >= 0.0 && fault.severity <= 1.0 &&
          fault.place >= firstPlace(fault.kind) && fault.place <= lastPlace(fault.kind, parameters) &&
          fault.onset >= 0.0 && fault.onset <= LATEST_ONSET;

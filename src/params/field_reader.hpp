@@ -20,14 +20,15 @@
 
 namespace hjt
 {
-/// Allowed form of each entry of FAULTS.
+/// Required form of each entry in the list of faults, for error messages.
 constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
 
-/// Fills the fields from the map and collects all errors, so that the user sees them at once.
+/// Visitor of visitFields that fills the fields from a map. It collects all errors, so that the user sees them
+/// together.
 class FieldReader
 {
 public:
-  /// `file`: source of the map's values if it is a single one; texts on missing keys name it.
+  /// `file`: the file of all values if there is only one. Messages about missing keys name it.
   explicit FieldReader(const ParameterMap& map, std::string file = "") : map_(map), file_(std::move(file)) {}
 
   void operator()(const std::string& key, const char* unit, double& field, const Range& range, const Meaning& meaning)
@@ -66,7 +67,7 @@ public:
     readList(key, unit, field.data(), N, range, meaning);
   }
 
-  /// Reads as many numbers as `field` has.
+  /// Reads a list, which must have as many numbers as `field`.
   void operator()(const std::string& key, const char* unit, std::vector<double>& field, const Range& range,
                   const Meaning& meaning)
   {
@@ -130,7 +131,7 @@ public:
           mistyped(key + "kind", map_.at(key + "kind"), faultNames());
         }
       }
-      (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 }, "severity, see fault_scale");
+      (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 }, "severity; for 1 see section fault_scale");
       (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 },
               "tooth, segment, lobe or ball; -1: the whole member");
       (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "delay after the start");
@@ -171,7 +172,7 @@ private:
     std::size_t distance = std::max<std::size_t>(2, withoutSection(unknown).size() / 3) + 1;
     for (const std::string& key : known)
     {
-      // The right name in a wrong section counts as one edit.
+      // A right name in a wrong section counts as one edit.
       const bool other_section = withoutSection(key) == withoutSection(unknown);
       const std::size_t edits = other_section ? 1 : editDistance(unknown, key);
       if (edits < distance)
@@ -183,7 +184,7 @@ private:
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
   }
 
-  /// Allowed form of `key` if it is a section or the list of faults; else empty.
+  /// Required form of the value of `key` if `key` is a section or the list of faults; else empty.
   std::string groupKind(const std::string& key) const
   {
     const auto below = known_.lower_bound(key + '.');
@@ -271,7 +272,7 @@ private:
   bool inRange(const std::string& key, const char* unit, const ParameterValue& configured, double value,
                const Range& range)
   {
-    // This form of the comparison rejects NaN.
+    // For NaN these comparisons are false.
     if (std::isfinite(value) && value >= range.min && value <= range.max)
     {
       return true;
@@ -286,7 +287,7 @@ private:
   {
     const auto* text = std::get_if<std::string>(&configured.value);
     const bool quoted = text != nullptr && decimalNumber(*text);
-    mustBe(key, configured, kind + (quoted ? "; write it without quotes, dot and exponent" : ""));
+    mustBe(key, configured, kind + (quoted ? ". Write the number without quotes, dot and exponent" : ""));
   }
 
   void mustBe(const std::string& key, const ParameterValue& configured, const std::string& what)

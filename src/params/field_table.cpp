@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Makes a FieldRow of each field.
+/// Visitor of visitFields that makes a FieldRow of each field.
 class RowMaker
 {
 public:
@@ -57,7 +57,7 @@ public:
   std::vector<FieldRow> rows;
 };
 
-/// Line `section.key: value  # [unit] meaning`.
+/// Line of the form `section.key: value  # [unit] meaning`.
 std::string lineOf(const FieldRow& row)
 {
   return row.key + ": " + row.value + "  # [" + row.unit + "] " + row.meaning.text + '\n';
@@ -126,7 +126,7 @@ std::string parameterTableMarkdown()
 
 namespace
 {
-/// Hashes the values of the requested fields in a fixed order, without their keys.
+/// Visitor of visitFields that hashes the values of the visited fields, without their keys.
 class FieldHasher
 {
 public:

@@ -391,11 +391,10 @@ void visitRealtime(P& p, Visitor& visit)
         ofOthers("live: processor of the loop's thread, counted from 0; -1: any"));
 }
 
-/// Table of all parameters. Reading, range checks, the parameter dump at start and docs/parameters.csv use it.
+/// Table of all parameters, for reading, range checks, the printed parameters and docs/parameters.csv.
 ///
-/// The table calls `visit(key, unit, value, range, meaning)` for numbers and arrays of numbers, and
-/// `visit(key, value, meaning)` for booleans, texts and choices.
-/// `P` is `Parameters` or `const Parameters`.
+/// The function calls `visit(key, unit, value, range, meaning)` for each number or array of numbers, and
+/// `visit(key, value, meaning)` for each boolean, text or choice. `P` is `Parameters` or `const Parameters`.
 template <class P, class Visitor>
 void visitFields(P& p, Visitor&& visit)
 {
@@ -429,18 +428,18 @@ void visitFields(P& p, Visitor&& visit)
 /// Hash of the parameters and faults that determine a response surface (FNV-1a, 64 bits).
 std::uint64_t surfaceParametersHash(const Parameters& parameters);
 
-/// Text of the parameters that determine a response surface, one per line. `faulty`: with those that determine its
-/// faults.
+/// Text of the parameters that determine a response surface, one per line. `faulty`: adds the parameters that determine
+/// the effects of faults.
 std::string describeSurfaceParameters(const Parameters& parameters, bool faulty);
 
-/// A row of the table of parameters with its value, as texts.
+/// Row of the table of parameters, with the value of the parameter.
 struct FieldRow
 {
   std::string key;
   std::string type;  ///< type: float, int, N floats, bool or text
   std::string unit;
   std::optional<Range> range;        ///< range of a number
-  std::vector<std::string> choices;  ///< allowed texts of a choice
+  std::vector<std::string> choices;  ///< allowed values of a choice
   std::string value;                 ///< value in YAML
   Meaning meaning;
 };

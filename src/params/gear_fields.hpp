@@ -10,18 +10,18 @@
 
 namespace hjt
 {
-/// Response surfaces that depend on a parameter.
+/// Response surfaces that a parameter changes.
 enum class Shapes
 {
-  SURFACE,  ///< all: the parameter changes the ring's equilibrium, or friction that depends on the angle
-  FAULTS,   ///< only those of a drive with faults
-  OTHERS    ///< none: the parameter does not matter, or is a friction that the step adds to the table's values
+  SURFACE,  ///< all surfaces: the parameter changes the ring's equilibrium, or friction that depends on the angle
+  FAULTS,   ///< only the surfaces of a drive with faults
+  OTHERS    ///< no surface, for example because a step of the twin adds the parameter's effect to the table's values
 };
 
-/// Meaning of a parameter, and the response surfaces that depend on it. The default is all surfaces.
+/// Meaning of a parameter, and the response surfaces that the parameter changes: by default all surfaces.
 struct Meaning
 {
-  // most rows of the table give only a text
+  // not explicit, because most rows of the table give only a text
   Meaning(const char* meaning, Shapes shaped = Shapes::SURFACE) : text(meaning), shapes(shaped) {}
 
   const char* text;
@@ -39,7 +39,7 @@ inline Meaning ofOthers(const char* text)
 }
 
 constexpr double NO_LIMIT = std::numeric_limits<double>::max();
-constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< range of errors of manufacture and fit [m]
+constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< range of errors of manufacture and of the fit [m]
 
 template <class P, class Visitor>
 void visitGear(P& p, Visitor& visit)

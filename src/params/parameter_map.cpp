@@ -24,7 +24,7 @@ bool divides(double rate, double of)
   return times >= 1.0 && std::abs(times * rate - of) <= 1e-9 * of;
 }
 
-/// Text of the rates nearest to `rate` that divide `of`.
+/// Text that names the rates nearest to `rate` that divide `of`.
 std::string nearestDivisors(double rate, double of)
 {
   const double times = std::floor(of / rate);
@@ -32,13 +32,13 @@ std::string nearestDivisors(double rate, double of)
                        "do: " + numberText(of / (times + 1.0)) + ", " + numberText(of / times);
 }
 
-/// Collects contradictions, each with the origins of its keys.
+/// Collector of messages about contradictions between parameters, with the origins of their keys.
 class Contradictions
 {
 public:
   explicit Contradictions(const ParameterMap& map) : map_(map) {}
 
-  /// `what` makes the text of the contradiction.
+  /// Adds a message if `holds` is false. `what`: function that returns the message.
   template <class What>
   void require(bool holds, const std::vector<std::string>& keys, const What& what)
   {
@@ -87,13 +87,13 @@ void checkPitch(const PitchParameters& pitch, const std::string& member, Contrad
   const std::string table_key = "manufacture." + member + "_pitch_table";
   const std::string deviation_key = "manufacture." + member + "_pitch_deviation";
   const bool from_table = pitch.table != NO_FILE;
-  // A node does not know the directory of its configuration, so a relative path has no base.
+  // The path must be absolute, because a node does not know the directory of its configuration.
   check.require(!from_table || pitch.table.front() == '/', { table_key },
                 [&] { return table_key + " = '" + pitch.table + "' must be an absolute path, or " + NO_FILE; });
   check.require(!from_table || pitch.deviation == 0.0, { table_key, deviation_key },
                 [&]
                 {
-                  return deviation_key + " = " + numberText(pitch.deviation) + " [m] must be 0 where " + table_key +
+                  return deviation_key + " = " + numberText(pitch.deviation) + " [m] must be 0 if " + table_key +
                          " gives the deviations";
                 });
 }
@@ -114,14 +114,14 @@ void checkElements(const Parameters& p, Contradictions& check)
                 {
                   return "cup.wall_stiffness = " + numberText(p.cup.wall_stiffness) +
                          " [N.m/rad] must exceed the steepest slope of cup.torsion_stiffness, " + numberText(steepest) +
-                         " [N.m/rad]: the wall is a part of the cup's compliance";
+                         " [N.m/rad], because the wall is only a part of the cup's compliance";
                 });
   check.require(p.mesh.profile == ProfileKind::TRAPEZOID || p.gear.engagementDepth() > 0.0,
                 { "mesh.profile", "gear.tip_radius_circular_spline" },
                 [&]
                 {
-                  return "mesh.profile needs teeth that reach into the circular spline, but they end " +
-                         numberText(-p.gear.engagementDepth()) + " [m] short of it";
+                  return "mesh.profile needs teeth that reach into the circular spline, but the teeth end " +
+                         numberText(-p.gear.engagementDepth()) + " [m] short of the circular spline";
                 });
   check.require(p.mesh.friction_kinetic <= p.mesh.friction_static, { "mesh.friction_kinetic", "mesh.friction_static" },
                 [&]
@@ -140,7 +140,7 @@ void checkElements(const Parameters& p, Contradictions& check)
                 { "contact.support", "bearing.balls" },
                 [&]
                 {
-                  return "contact.support = single_balls needs no more balls than teeth, and bearing.balls = " +
+                  return "contact.support = single_balls allows at most one ball for each tooth, but bearing.balls = " +
                          std::to_string(p.bearing.balls);
                 });
 }
@@ -198,14 +198,14 @@ void checkFaults(const Parameters& p, Contradictions& check)
 
 void checkRates(const Parameters& p, Contradictions& check)
 {
-  // A step must be a whole number of nanoseconds, the unit of the messages' clock. Otherwise the times of the steps
-  // would drift from that clock.
+  // The unit of the messages' clock is a nanosecond. If a step were not a whole number of nanoseconds, the times of the
+  // steps would drift from this clock.
   const double step = std::round(NANOSECONDS_PER_SECOND / p.solver.rate);
   check.require(step * p.solver.rate == NANOSECONDS_PER_SECOND, { "solver.rate" },
                 [&]
                 {
                   return "solver.rate = " + numberText(p.solver.rate) +
-                         " [Hz] must make a step of whole nanoseconds, as 1000, 8000 or 10000 do";
+                         " [Hz] must make a step of whole nanoseconds, as for example 1000, 8000 or 10000";
                 });
 
   const auto check_rate = [&](const std::string& key, double rate)
@@ -237,7 +237,7 @@ void checkRates(const Parameters& p, Contradictions& check)
               });
 }
 
-/// Texts of contradictions between parameters that are each in range. `map` gives their origins.
+/// Messages about contradictions between parameters that are all in range. `map` gives the origins of the parameters.
 std::vector<std::string> contradictions(const Parameters& parameters, const ParameterMap& map)
 {
   Contradictions check(map);
@@ -289,7 +289,7 @@ Parameters parseParameters(const ParameterMap& map)
   reader.readFaults(parameters.faults);
   reader.refuseUnknownKeys();
   throwIfAny(reader.errors());
-  // Values can be compared only if each is in range.
+  // Contradictions are checked only if all values are in range.
   throwIfAny(contradictions(parameters, map));
   return parameters;
 }

@@ -8,10 +8,10 @@
 
 namespace hjt
 {
-/// Error text of a severity out of range, as in faultErrors but without a gear; empty if the severity is valid.
+/// Error message for a severity out of range, which needs no parameters of the gear; empty if the severity is valid.
 inline std::string severityErrors(const Fault& fault, const std::string& key)
 {
-  // This form of the comparison rejects NaN.
+  // For NaN these comparisons are false.
   return fault.severity >= 0.0 && fault.severity <= 1.0 ?
              "" :
              key + "severity = " + numberText(fault.severity) + " [-] of " + describe(fault.kind).name +

@@ -3,25 +3,25 @@
 
 #include "harmonic_joint_twin/params/parameters.hpp"
 
-// Variants of a configured drive that differ in one respect.
+// Each function returns the parameters of a drive that differs from the configured drive in one respect.
 namespace hjt
 {
-/// Drive without load at the output, for a load torque that already contains the weight.
+/// Drive whose load has no weight, for a load torque that already contains the weight.
 inline Parameters withoutWeight(Parameters parameters)
 {
   parameters.output.gravity_torque = 0.0;
   return parameters;
 }
 
-/// Drive whose temperature is given instead of computed.
+/// Drive whose temperature is given and not computed from the losses.
 inline Parameters withoutHeat(Parameters parameters)
 {
   parameters.thermal.model = ThermalModel::NONE;
   return parameters;
 }
 
-/// Drive with friction coefficients 1 at flanks and outer race. Its friction torque is the normal force's share by
-/// which the coefficient is multiplied.
+/// Drive with friction coefficients of 1 at flanks and outer race. Its friction torque, multiplied by any coefficient,
+/// is that of a drive with this coefficient.
 inline Parameters withUnitFriction(Parameters parameters)
 {
   parameters.mesh.friction_static = 1.0;
@@ -30,7 +30,7 @@ inline Parameters withUnitFriction(Parameters parameters)
   return parameters;
 }
 
-/// Drive with equal teeth and equal spaces. The wave generator keeps its errors.
+/// Drive with equal teeth and equal spaces. The errors of the wave generator stay.
 inline Parameters withEqualTeeth(Parameters parameters)
 {
   ManufactureParameters& errors = parameters.manufacture;
@@ -45,7 +45,7 @@ inline Parameters withEqualTeeth(Parameters parameters)
   return parameters;
 }
 
-/// Whether every tooth has the same contacts as the others, shifted by its pitch.
+/// Whether all teeth and all spaces are equal: the gear has neither errors of manufacture nor configured faults.
 inline bool teethAreAlike(const Parameters& parameters)
 {
   const ManufactureParameters& errors = parameters.manufacture;
@@ -56,7 +56,7 @@ inline bool teethAreAlike(const Parameters& parameters)
          is_zero(errors.circular_spline_ellipticity) && parameters.faults.empty();
 }
 
-/// Drive without errors of manufacture and fit.
+/// Drive without errors of manufacture.
 inline Parameters withoutErrors(const Parameters& parameters)
 {
   Parameters drawn = withEqualTeeth(parameters);

@@ -29,8 +29,8 @@ struct GearParameters
   }
 };
 
-/// Rotation that the bending stiffness of the rim resists: that of each segment from rest (thesis 5.47-5.53), or that
-/// between neighbouring segments.
+/// Rotation that the bending stiffness of the rim resists: the rotation of each segment from rest (thesis 5.47-5.53),
+/// or the rotation between neighbouring segments.
 enum class BendingLaw
 {
   ABSOLUTE,
@@ -48,7 +48,7 @@ struct RingParameters
   double loss_factor{};
 };
 
-/// Direction of the wave generator's force: through the thesis' polar point (eq. 5.11), or along the true normal.
+/// Direction of the wave generator's force: at the polar point of the thesis (eq. 5.11), or along the true normal.
 enum class ContactLaw
 {
   POLAR,
@@ -60,7 +60,7 @@ enum class SupportKind
 {
   SPRINGS,      ///< a spring at each tooth, on a rigid ellipse
   BALLS,        ///< the balls of the bearing by Hertz' law, spread evenly around the ring
-  SINGLE_BALLS  ///< the same law for each ball at its own angle
+  SINGLE_BALLS  ///< each ball of the bearing by Hertz' law, at its own angle
 };
 
 struct ContactParameters
@@ -100,10 +100,10 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Value of a file parameter that names no file.
+/// Value of a parameter for a file if there is no file.
 constexpr const char* NO_FILE = "none";
 
-/// Pitch errors of one toothed part, from a seeded random sequence or from a table.
+/// Pitch errors of the flexspline or the circular spline, from a random sequence with a seed or from a table.
 struct PitchParameters
 {
   double deviation{};

@@ -12,42 +12,44 @@
 
 namespace hjt
 {
-/// One configured value and its origin for error texts, for example "config/gear.yaml:12" or "--set".
+/// Configured value with its origin for error messages, for example "config/gear.yaml:12" or "--set".
 struct ParameterValue
 {
   std::variant<bool, std::int64_t, double, std::string, std::vector<double>> value;
   std::string origin;  ///< file and line, option, or "parameter server"
 };
 
-/// Flat map from `section.key` to value: common form of YAML files, `--set` and the ROS parameter server.
+/// Map from `section.key` to value, the common form for YAML files, `--set` and the ROS parameter server.
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Top-level key of the list of faults. The map holds `faults.N.kind`, `faults.N.severity` and so on, N from 0.
+/// Top-level key of the list of faults. The map has the keys `faults.N.kind`, `faults.N.severity` and so on, with N
+/// from 0.
 constexpr const char* FAULTS = "faults";
 std::string faultKey(int number);     ///< key of fault N: `faults.N`
-void eraseFaults(ParameterMap& map);  ///< removes all faults; a new list of faults replaces the old list as a whole
+void eraseFaults(ParameterMap& map);  ///< removes all faults, because a new list of faults replaces the old list
 
 /// Reads a YAML file of the form `section: {key: value}`, with the list `faults`. Its values replace those in `map`.
-/// Numbers may have any decimal spelling, 1e-3 as well as 1.0e-3.
+/// Numbers may have any decimal spelling, for example 1e-3 or 1.0e-3.
 /// @throws ParameterError that names file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);
 
-/// Reads the default configuration: the files that `directory`/stages lists, in that order, as readYamlFile does.
+/// Reads the default configuration: calls readYamlFile for the files that `directory`/stages lists, in the order of the
+/// list.
 /// @throws ParameterError that names file and line.
 void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 
-/// Value of one YAML scalar by the rules of rosparam; a `quoted` scalar is always a text. The error text contains
+/// Value of a YAML scalar by the rules of rosparam. A `quoted` scalar is always a text. The error message contains
 /// `key` and `origin`. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
 
-/// The number in `value`, also if a text spells it: the parameter server holds 1e-3 as a text. Nothing if it is no
+/// Number in `value`, which may be a text, because the parameter server holds 1e-3 as a text. Nothing if `value` is no
 /// number.
 std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
-/// The value as error texts print it.
+/// Text of the value in error messages.
 std::string valueText(const ParameterValue& value);
 
-/// Reads one `section.key=value`, its value in YAML, into `map`. @throws ParameterError.
+/// Reads a `section.key=value` with a value in YAML into `map`. @throws ParameterError.
 void readAssignment(const std::string& assignment, ParameterMap& map);
 
 /// Converts a complete map to checked parameters.
@@ -63,10 +65,10 @@ std::uint64_t parametersHash(const Parameters& parameters);
 /// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
-/// Reads a text of describeParameters into `map`; its faults replace those of `map`. Error texts name `source`.
-/// @throws ParameterError that names source and line.
+/// Reads a text of describeParameters into `map`. The faults of the text replace those of `map`. @throws ParameterError
+/// that names `source` and line.
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
-/// The table of docs/parameters.md with key, unit, range and meaning.
+/// Table of docs/parameters.csv in Markdown, with key, type, unit, range and meaning of each parameter.
 std::string parameterTableMarkdown();
 }  // namespace hjt

@@ -11,9 +11,8 @@
 
 namespace hjt
 {
-/// @file Parameters as plain values in SI units, one struct for each section of the configuration. No field has a
-/// default.
-/// docs/parameters.md gives unit, range and meaning of each field; its source is params/field_table.hpp.
+/// @file Parameters as plain values in SI units, with one struct for each section of the configuration. No field has a
+/// default. docs/parameters.md gives unit, range and meaning of each field, from params/field_table.hpp.
 
 struct MotorParameters
 {
@@ -57,11 +56,11 @@ struct BrakeParameters
   bool engaged_at_start{};
 };
 
-/// Whether the drive's losses warm it.
+/// Whether the losses of the drive warm the drive.
 enum class ThermalModel
 {
-  NONE,      ///< the drive has the configured or received temperature
-  TWO_NODES  ///< two heat capacities, grease and housing, which the losses heat
+  NONE,      ///< no: the drive has the configured or received temperature
+  TWO_NODES  ///< yes: the losses warm two heat capacities, grease and housing
 };
 
 struct ThermalParameters
@@ -76,7 +75,7 @@ struct ThermalParameters
   double housing_rise{};
 };
 
-/// How the twin computes the ring's equilibrium: always from all teeth, or from a response surface where it is valid.
+/// Computation of the ring's equilibrium: always by the full ring, or by a response surface for angles in its range.
 enum class SceneKind
 {
   FULL_RING,
@@ -110,7 +109,7 @@ struct SensorParameters
   int noise_seed{};
 };
 
-/// Computation of the indicators from the drive's signals, and their assessment.
+/// Parameters for the computation of indicators from the drive's signals, and for their assessment.
 struct IndicatorParameters
 {
   double sample_rate{};
@@ -135,7 +134,7 @@ struct HealthParameters
   double averaging_time{};
 };
 
-/// Places of the flexspline with the largest stresses. All arrays by place have this order.
+/// Places of the flexspline with the largest stresses. Arrays with one value for each place are in this order.
 enum class StressPlace
 {
   TOOTH_SPACE,  ///< rim between two teeth
@@ -144,7 +143,7 @@ enum class StressPlace
 };
 constexpr std::size_t STRESS_PLACES = 3;
 
-/// Coefficients of the stress that follows from the shape of the flexspline (statics/flexspline_stress.hpp).
+/// Coefficients by which the stress of the flexspline follows from its shape (statics/flexspline_stress.hpp).
 struct StressParameters
 {
   double tooth_base{};
@@ -192,26 +191,26 @@ struct LifeParameters
   double forecast_period{};
 };
 
-/// Range of the drive's temperature [degC].
+/// Allowed range of the drive's temperature [degC].
 constexpr double MIN_TEMPERATURE = -40.0;
 constexpr double MAX_TEMPERATURE = 150.0;
 
-/// Input of the node.
+/// Signals that drive the twin of the node.
 enum class InputMode
 {
-  COMMANDS,  ///< commanded torques; no robot is measured
-  TORQUE,    ///< the measured current of a robot drives the twin, open loop
-  MOTION,    ///< the twin predicts torque and current of a healthy joint from the measured motion
+  COMMANDS,  ///< commanded torques drive the twin, without a robot
+  TORQUE,    ///< the measured current of a robot drives the twin, and measured angles do not correct it
+  MOTION,    ///< the twin predicts torque and current of a sound joint from the measured motion
   OBSERVER   ///< the measured current drives the twin, and the measured angles correct its states
 };
 
-/// Source of the torque at the output of a measured joint.
+/// Source of the load of a joint whose motion a robot measures.
 enum class LoadSource
 {
-  MODEL,          ///< weight and inertia from section output of the configuration
-  LOAD_TORQUE,    ///< weight and inertia from section output, plus the received external torque
-  TARGET_MOMENT,  ///< only the received torque, for example a controller's rigid-body torque
-  ARM             ///< torque of links and payload, from the motion of all joints of the arm
+  MODEL,          ///< weight and inertia from the section `output` of the configuration
+  LOAD_TORQUE,    ///< weight and inertia from the section `output`, plus the received external torque
+  TARGET_MOMENT,  ///< only the received torque, for example the controller's torque of the rigid links
+  ARM             ///< torque of links and payload, computed from the motion of all joints of the arm
 };
 
 /// Quantity that a robot publishes as the effort of a joint.
@@ -251,7 +250,7 @@ struct TelemetryParameters
   LoadSource load{};
 };
 
-/// Standard deviations of the observer's measurements and disturbance. They alone determine the gains.
+/// Standard deviations of the observer's measurements and disturbance, which determine the gains of the observer.
 struct ObserverParameters
 {
   double output_angle_noise{};
@@ -261,7 +260,7 @@ struct ObserverParameters
   double disturbance_growth{};
 };
 
-/// Tolerances of a sound joint: against the twin of its kind, and from one recording to the next.
+/// Tolerances for a sound joint: of its differences from the twin, and of its differences between recordings.
 struct ComparisonParameters
 {
   double friction_tolerance{};
@@ -350,7 +349,7 @@ struct Parameters
   ComparisonParameters comparison;
   PublishParameters publish;
   FaultScaleParameters fault_scale;
-  std::vector<Fault> faults;  ///< faults that are present at the start or that set in later
+  std::vector<Fault> faults;  ///< faults that are active at the start or that set in later
   RealtimeParameters realtime;
 };
 }  // namespace hjt
