@@ -18,10 +18,11 @@ void visitMotor(P& p, Visitor& visit)
   visit("motor.wave_generator_inertia", "kg.m^2", p.motor.wave_generator_inertia, Range{ 0.0, 10.0 },
         ofOthers("moment of inertia of the wave generator"));
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
-        ofOthers("Coulomb friction at the motor shaft, in addition to that of bearing, outer race and flanks"));
+        ofOthers("Coulomb friction at the motor shaft, in addition to the friction of bearing, outer race and flanks"));
   visit(
       "motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
-      ofOthers("additional friction at the motor shaft at standstill, beyond motor.coulomb_torque and the bearing's"));
+      ofOthers(
+          "friction at the motor shaft at standstill, in addition to motor.coulomb_torque and the bearing's friction"));
   visit("motor.stribeck_velocity", "rad/s", p.motor.stribeck_velocity, Range{ 1e-6, 1e4 },
         ofOthers("motor speed at which motor.stribeck_torque has decayed to 1/e"));
   visit("motor.presliding_angle", "rad", p.motor.presliding_angle, Range{ 0.0, 1.0 },
@@ -29,23 +30,24 @@ void visitMotor(P& p, Visitor& visit)
   visit("motor.viscous_friction", "N.m.s/rad", p.motor.viscous_friction, Range{ 0.0, 1e3 },
         ofOthers("viscous friction at the motor shaft"));
   visit("motor.copper_loss", "W/(N.m)^2", p.motor.copper_loss, Range{ 0.0, 1e4 },
-        ofOthers("heat of the motor's winding per square of its torque"));
+        ofOthers("heat of the motor's winding over the square of the motor's torque"));
   visit("motor.torque_limit", "N.m", p.motor.torque_limit, Range{ 0.0, 1e4 },
-        "limit of the commanded torque; larger commands are clamped and counted");
+        "limit of the commanded torque; the twin clamps and counts larger commands");
   visit("motor.speed_limit", "rad/s", p.motor.speed_limit, Range{ 1e-3, 1e5 },
-        ofOthers("speed beyond which the drive does not accelerate the motor"));
+        ofOthers("motor speed above which the motor has no accelerating torque"));
   visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
         ofOthers("bandwidth of the current loop, a first-order lag; 0 = no lag"));
-  visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
-        ofOthers("relative change of torque per current with the magnets' temperature, from 25 degC"));
+  visit(
+      "motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
+      ofOthers("relative change of the torque per current for each kelvin of the magnets' temperature above 25 degC"));
   visit("motor.torque_ripple", "-", p.motor.torque_ripple, Range{ 0.0, 0.5 },
         ofOthers("amplitude of the torque ripple at six times the electrical frequency, relative to the torque"));
   visit("motor.pole_pairs", "-", p.motor.pole_pairs, Range{ 1, 1000 },
-        ofOthers("pairs of poles: electrical periods in a turn"));
+        ofOthers("number of pairs of poles, which is the number of electrical periods in a turn"));
   visit("motor.cogging_torque", "N.m", p.motor.cogging_torque, Range{ 0.0, 1e3 },
         ofOthers("amplitude of the cogging torque between magnets and slots"));
   visit("motor.cogging_periods", "-", p.motor.cogging_periods, Range{ 1, 10000 },
-        ofOthers("periods of the cogging torque in a turn: least common multiple of poles and slots"));
+        ofOthers("number of periods of the cogging torque in a turn, the least common multiple of poles and slots"));
 }
 
 template <class P, class Visitor>
@@ -62,15 +64,15 @@ void visitOutput(P& p, Visitor& visit)
   visit("output.tilting_moment", "N.m", p.output.tilting_moment, Range{ 0.0, 1e5 },
         ofOthers("tilting moment on the output's bearing"));
   visit("output.tilting_friction", "-", p.output.tilting_friction, Range{ 0.0, 1.0 },
-        ofOthers("dry friction of the output's bearing per tilting moment"));
+        ofOthers("dry friction of the output's bearing over the tilting moment"));
   visit("output.gravity_torque", "N.m", p.output.gravity_torque, Range{ 0.0, 1e5 },
-        ofOthers("largest torque of the load's weight, m g l; 0 = none"));
+        ofOthers("largest torque of the load's weight, m g l; 0 = no weight"));
   visit("output.gravity_angle", "rad", p.output.gravity_angle, Range{ -6.2831853071795865, 6.2831853071795865 },
         ofOthers("joint angle at which the load hangs straight down"));
   visit("output.torque_limit", "N.m", p.output.torque_limit, Range{ 0.0, 1e6 },
         ofOthers("torque at the joint above which the twin counts an overload and warns"));
   visit("output.load_torque_limit", "N.m", p.output.load_torque_limit, Range{ 0.0, 1e6 },
-        "limit of the external torque; larger torques are clamped and counted");
+        "limit of the external torque; the twin clamps and counts larger torques");
 }
 
 template <class P, class Visitor>
@@ -90,8 +92,8 @@ template <class P, class Visitor>
 void visitThermal(P& p, Visitor& visit)
 {
   visit("thermal.model", p.thermal.model,
-        ofOthers("none: the drive has input.temperature; two_nodes: grease and housing warm up by the losses, and "
-                 "input.temperature is that of the surroundings"));
+        ofOthers("none: the drive has the temperature input.temperature; two_nodes: the losses warm grease and "
+                 "housing, and input.temperature is that of the surroundings"));
   visit("thermal.grease_capacity", "J/K", p.thermal.grease_capacity, Range{ 1e-2, 1e6 },
         ofOthers("heat capacity of grease, wave generator, flexspline and rotor"));
   visit("thermal.housing_capacity", "J/K", p.thermal.housing_capacity, Range{ 1e-2, 1e6 },
@@ -113,17 +115,19 @@ void visitSolver(P& p, Visitor& visit)
 {
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; a step must be a whole number of nanoseconds"));
-  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
-        ofOthers("largest allowed out-of-balance force on a tooth; a step of motion allows ten times that"));
+  visit(
+      "solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
+      ofOthers("largest allowed out-of-balance force on a tooth; in a step of motion ten times this force is allowed"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
-        ofOthers("largest number of Newton iterations of an attempt; 20 for a response surface"));
-  visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
-        ofOthers("largest number of halvings of a step that does not converge; 8 for a response surface"));
+        ofOthers("largest number of Newton iterations of a solve; the build of a response surface uses 20"));
+  visit(
+      "solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
+      ofOthers("largest number of halvings of a step that does not converge; the build of a response surface uses 8"));
   visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
         ofOthers("motor speed below which friction is regularised"));
-  visit(
-      "solver.scene", p.solver.scene,
-      ofOthers("full_ring: every step solves every tooth; auto: a step uses the response surface where that is valid"));
+  visit("solver.scene", p.solver.scene,
+        ofOthers("full_ring: every step solves all teeth; auto: a step uses the response surface if the angles are in "
+                 "its range"));
 }
 
 template <class P, class Visitor>
@@ -134,32 +138,37 @@ void visitSensors(P& p, Visitor& visit)
   visit("sensors.output_counts_per_turn", "-", p.sensors.output_counts_per_turn, Range{ 2, 1 << 30 },
         ofOthers("counts of the absolute output encoder in a turn"));
   visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
-        ofOthers("time over which the encoder velocities are difference quotients"));
-  visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
-        ofOthers("amplitude of the motor encoder's error once a turn, in phase with the sine of the motor angle"));
+        ofOthers("time between the two angles from which a velocity of the encoders is computed"));
+  visit(
+      "sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
+      ofOthers(
+          "amplitude of the motor encoder's error of one period per turn, in phase with the sine of the motor angle"));
   visit("sensors.motor_lines", "rad", p.sensors.motor_lines, Range{ -0.1, 0.1 },
-        ofOthers("amplitudes of the motor encoder's errors two and four times a turn"));
+        ofOthers("amplitudes of the motor encoder's errors of two and four periods per turn"));
   visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
-        ofOthers("rms noise of the motor encoder at every step, before the resolution into counts"));
+        ofOthers("rms noise of the motor encoder's angle in each step, before the angle is rounded to counts"));
   visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
-        ofOthers("amplitude of the output encoder's error once a turn, in phase with the sine of the output angle"));
+        ofOthers("amplitude of the output encoder's error of one period per turn, in phase with the sine of the output "
+                 "angle"));
   visit("sensors.output_lines", "rad", p.sensors.output_lines, Range{ -0.1, 0.1 },
-        ofOthers("amplitudes of the output encoder's errors two and four times a turn"));
+        ofOthers("amplitudes of the output encoder's errors of two and four periods per turn"));
   visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
-        ofOthers("rms noise of the output encoder at every step, before the resolution into counts"));
+        ofOthers("rms noise of the output encoder's angle in each step, before the angle is rounded to counts"));
   visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
-        ofOthers("rms noise, at every step, of the motor torque estimated from the current"));
+        ofOthers("rms noise of the motor torque estimated from the current, in each step"));
   visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
-        ofOthers("resolution of the motor torque estimated from the current; 0 = none"));
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("delay of all readings, in whole steps"));
+        ofOthers("resolution of the motor torque estimated from the current; 0 = no rounding"));
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 },
+        ofOthers("delay of all readings, rounded to whole steps"));
   visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
-        ofOthers("seed of the noise: equal seeds give equal noise at equal stamps"));
+        ofOthers("seed of the noise; equal seeds give equal noise at equal stamps"));
 }
 
 template <class P, class Visitor>
 void visitJoint(P& p, Visitor& visit)
 {
-  visit("joint.name", p.joint.name, ofOthers("name of the joint in JointState messages; the motor is NAME_motor"));
+  visit("joint.name", p.joint.name,
+        ofOthers("name of the joint in JointState messages; the name of its motor is NAME_motor"));
   visit("joint.hardware_id", p.joint.hardware_id, ofOthers("hardware id in /diagnostics (REP-107: the serial number)"));
 }
 
@@ -167,7 +176,7 @@ template <class P, class Visitor>
 void visitHealth(P& p, Visitor& visit)
 {
   visit("health.stiffness_torque_span", "N.m", p.health.stiffness_torque_span, Range{ 1e-3, 1e5 },
-        ofOthers("least variation of the joint torque from which a stiffness is estimated"));
+        ofOthers("least variation of the joint torque for an estimate of the stiffness"));
   visit("health.averaging_time", "s", p.health.averaging_time, Range{ 1e-3, 1e4 },
         ofOthers("time constant of the averages of efficiency and stiffness"));
 }
@@ -178,9 +187,9 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
         ofOthers("sample rate of the twin's own indicators; must divide solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
-        ofOthers("motor turns at steady speed in a window"));
+        ofOthers("number of motor turns at steady speed in a window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
-        ofOthers("longest duration of a window; it may then have fewer turns"));
+        ofOthers("longest duration of a window, which then ends even if it has fewer turns"));
   visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
         ofOthers("motor speed below which the joint counts as at rest"));
   visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
@@ -188,24 +197,24 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.stiffness_torque", "N.m", p.indicators.stiffness_torque, Range{ 1e-2, 1e5 },
         ofOthers("joint torque below which the stiffness is K1"));
   visit("indicators.lost_motion_torque", "N.m", p.indicators.lost_motion_torque, Range{ 1e-2, 1e5 },
-        ofOthers("the lost motion is between plus and minus this torque; a change of torque of this width moves from "
-                 "one branch of "
-                 "the loop to the other"));
+        ofOthers("the lost motion is the torsion between plus and minus this torque; after a reversal, a change of the "
+                 "torque by this value leads to the other branch of the hysteresis loop"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
-        ofOthers("windows at an operating point from which the twin learns the reference"));
-  visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
-        ofOthers("largest number of classes of operating points with a learned reference, 0.2 MB of memory each"));
+        ofOthers("number of windows at an operating point from which the twin learns the reference"));
+  visit(
+      "indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
+      ofOthers("largest number of classes of operating points with a learned reference; each needs 0.2 MB of memory"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("relative repeatability of a sound drive's indicators from one recording to the next"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
         ofOthers("probability that the mean of sound windows has an indicator or pattern beyond its threshold"));
   visit("indicators.evidence_windows", "-", p.indicators.evidence_windows, Range{ 1, 100 },
-        ofOthers("number of windows of an operating point whose mean is judged"));
+        ofOthers("number of windows of an operating point whose mean the assessment compares with the reference"));
   visit("indicators.error_factor", "-", p.indicators.error_factor, Range{ 1.0, 1e3 },
-        ofOthers("multiple of the threshold from which a deviation is an error instead of a warning"));
+        ofOthers("multiple of the threshold above which a deviation is an ERROR and not a WARN"));
   visit("indicators.signatures", p.indicators.signatures,
-        ofOthers("file with the signatures of this gear's faults, relative to the default configuration or as a "
-                 "path; none: no causes are named"));
+        ofOthers("file with the signatures of this gear's faults, relative to the default configuration or as a path; "
+                 "none: the assessment names no causes"));
 }
 
 template <class P, class Visitor>
@@ -214,28 +223,29 @@ void visitLife(P& p, Visitor& visit)
   visit("life.rated_torque", "N.m", p.life.rated_torque, Range{ 1e-3, 1e5 },
         ofOthers("rated output torque of the catalogue, for which bearing_l10 and bearing_l50 hold"));
   visit("life.repeated_peak_torque", "N.m", p.life.repeated_peak_torque, Range{ 1e-3, 1e5 },
-        ofOthers("the catalogue's limit for repeated torques, as of starting and stopping"));
+        ofOthers("limit of the catalogue for repeated torques, for example at starts and stops"));
   visit("life.momentary_peak_torque", "N.m", p.life.momentary_peak_torque, Range{ 1e-3, 1e5 },
-        "the catalogue's limit for momentary torques, as in a collision");
+        "limit of the catalogue for momentary torques, for example in a collision");
   visit("life.momentary_peak_cycles", "-", p.life.momentary_peak_cycles, Range{ 1.0, 1e15 },
-        ofOthers("deflections of the flexspline that the catalogue allows under momentary peaks"));
+        ofOthers("number of deflections of the flexspline that the catalogue allows under the momentary peak torque"));
   visit("life.rated_speed", "rad/s", p.life.rated_speed, Range{ 1e-3, 1e4 },
         ofOthers("rated motor speed of the catalogue, for which bearing_l10 and bearing_l50 hold"));
   visit("life.bearing_l10", "h", p.life.bearing_l10, Range{ 1.0, 1e6 },
         ofOthers("time at rated torque and speed after which 10 % of the wave generator's bearings have failed"));
   visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
         ofOthers("time at rated torque and speed after which half of the bearings have failed; more than bearing_l10"));
-  visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
-        ofOthers("turns from a bearing's first spall to the end of its use, as a share of its life"));
+  visit(
+      "life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
+      ofOthers("turns from a bearing's first spall to the end of its use, as a share of the turns before this spall"));
   visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
         ofOthers("standard deviation, from drive to drive, of the logarithm of spall_growth"));
   visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, ofOthers("length of the flexspline's teeth"));
   visit("life.elastic_modulus", "Pa", p.life.elastic_modulus, Range{ 1e9, 1e12 },
         ofOthers("elastic modulus of the flexspline"));
   visit("life.flank_wear_coefficient", "1/Pa", p.life.flank_wear_coefficient, Range{ 0.0, 1e-12 },
-        ofOthers("Archard's k of the tooth flanks in fresh grease: worn volume per force and sliding distance"));
+        ofOthers("Archard's k of the tooth flanks in fresh grease: worn volume over force times sliding distance"));
   visit("life.interface_wear_coefficient", "1/Pa", p.life.interface_wear_coefficient, Range{ 0.0, 1e-12 },
-        ofOthers("Archard's k between the bearing's outer race and the flexspline in fresh grease"));
+        ofOthers("Archard's k of the contact of the bearing's outer race with the flexspline in fresh grease"));
   visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
         ofOthers("standard deviation, from drive to drive, of the logarithm of both wear coefficients"));
   visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
@@ -243,27 +253,27 @@ void visitLife(P& p, Visitor& visit)
   visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
         ofOthers("wear depth of race and rim at the end of the drive's life"));
   visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
-        ofOthers("turns of the motor between two changes of grease at grease_temperature"));
+        ofOthers("number of turns of the motor between two changes of grease at grease_temperature"));
   visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },
         ofOthers("temperature for which grease_turns holds"));
   visit("life.grease_halving", "K", p.life.grease_halving, Range{ 1.0, 100.0 },
         ofOthers("rise of temperature that halves the life of the grease"));
   visit("life.grease_wear_factor", "-", p.life.grease_wear_factor, Range{ 1.0, 1e4 },
-        ofOthers("ratio of wear in grease that is due for a change to wear in fresh grease"));
+        ofOthers("wear in grease that is due for a change, divided by wear in fresh grease"));
   visit("life.ultimate_strength", "Pa", p.life.ultimate_strength, Range{ 1e7, 1e10 },
         ofOthers("tensile strength of the flexspline; more than endurance_limit"));
   visit("life.endurance_limit", "Pa", p.life.endurance_limit, Range{ 1e6, 1e10 },
         ofOthers("stress amplitude that half of all flexsplines endure without limit, at zero mean stress"));
   visit("life.endurance_cycles", "-", p.life.endurance_cycles, Range{ 1e3, 1e12 },
-        ofOthers("cycles at which the S-N curve reaches the endurance limit"));
+        ofOthers("number of cycles at which the S-N curve reaches the endurance limit"));
   visit("life.fatigue_exponent", "-", p.life.fatigue_exponent, Range{ 1.0, 50.0 },
-        ofOthers("k of the S-N curve: the endured cycles are in proportion to amplitude^-k"));
+        ofOthers("k of the S-N curve: the number of endured cycles is proportional to amplitude^-k"));
   visit("life.fatigue_spread", "-", p.life.fatigue_spread, Range{ 0.0, 1.0 },
         ofOthers("standard deviation, from drive to drive, of the logarithm of the fatigue strength"));
   visit("life.flaw_depth", "m", p.life.flaw_depth, Range{ 0.0, 1e-3 },
         ofOthers("depth of a crack at a tooth root of the new drive; 0 = no crack"));
   visit("life.crack_coefficient", "m", p.life.crack_coefficient, Range{ 0.0, 1e-3 },
-        ofOthers("C of Paris' law: growth in a cycle at a range of stress intensity of 1 MPa sqrt(m)"));
+        ofOthers("C of Paris' law: growth of a crack in a cycle at a range of stress intensity of 1 MPa sqrt(m)"));
   visit("life.crack_exponent", "-", p.life.crack_exponent, Range{ 1.0, 20.0 }, ofOthers("exponent m of Paris' law"));
   visit("life.crack_threshold", "MPa sqrt(m)", p.life.crack_threshold, Range{ 0.0, 100.0 },
         ofOthers("range of stress intensity below which a crack does not grow"));
@@ -277,60 +287,62 @@ template <class P, class Visitor>
 void visitInput(P& p, Visitor& visit)
 {
   visit("input.mode", p.input.mode,
-        ofOthers("commands: the twin alone; torque, motion: the robot's measured torque or motion drives the twin; "
-                 "observer: both do"));
+        ofOthers("commands: commanded torques drive the twin; torque, motion: the robot's measured torque or motion "
+                 "drives it; observer: measured torque and motion drive it"));
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, NO_LIMIT },
-        ofOthers("a torque command older than this counts as zero"));
+        ofOthers("age above which a torque command counts as zero"));
   visit("input.delay", "s", p.input.delay, Range{ 0.0, 10.0 },
-        ofOthers("live: lag of the twin behind the clock, so that stamped commands arrive in time"));
+        ofOthers("live: time by which the twin is behind the clock, so that stamped commands arrive in time"));
   visit("input.wait_for_first_input", p.input.wait_for_first_input,
-        ofOthers("true: the twin starts at the stamp of the first input, for replay; false: it starts at the clock's "
-                 "first instant"));
+        ofOthers("true: the twin starts at the stamp of the first input, for replay; false: the twin starts at the "
+                 "clock's first instant"));
   visit("input.temperature", "degC", p.input.temperature, Range{ MIN_TEMPERATURE, MAX_TEMPERATURE },
-        ofOthers("temperature of the drive, or of its surroundings where thermal.model is not none"));
+        ofOthers("temperature of the drive or, if thermal.model is two_nodes, that of its surroundings"));
 }
 
 template <class P, class Visitor>
 void visitTelemetry(P& p, Visitor& visit)
 {
   visit("telemetry.torque_per_current", "N.m/A", p.telemetry.torque_per_current, Range{ 1e-6, 1e6 },
-        ofOthers("torque at the joint per ampere of measured motor current"));
+        ofOthers("torque at the joint over the measured motor current (gain)"));
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
         ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        ofOthers("motor angle after a reversal over which friction builds up, torsion of gear and cup included"));
+        ofOthers("motor angle after a reversal over which friction builds up, with the torsion of the gear"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
-        ofOthers("share of the friction that remains at rest, and that a small motion does not reverse"));
+        ofOthers("share of the friction that remains at rest and that a small motion does not reverse"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         ofOthers("part of the motor's inertia whose torque the recorded load torque already contains"));
   visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of two waves in a turn of the motor against the "
-                 "circular spline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of the line with two periods in a turn of the wave "
+                 "generator relative to the circular spline"));
   visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of two waves in a turn against the flexspline"));
-  visit(
-      "telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
-      ofOthers("kinematic error times stiffness: cosine and sine of four waves in a turn against the circular spline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of the line with two periods in a turn of the wave "
+                 "generator relative to the flexspline"));
+  visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
+        ofOthers("kinematic error times stiffness: cosine and sine of the line with four periods in a turn of the wave "
+                 "generator relative to the circular spline"));
   visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of four waves in a turn against the flexspline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of the line with four periods in a turn of the wave "
+                 "generator relative to the flexspline"));
   visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
         ofOthers("resonance of the load on the joint's stiffness; far below this frequency the load follows the "
-                 "kinematic error, far above the load is at rest"));
+                 "kinematic error, far above it the load is at rest"));
   visit("telemetry.ripple_damping", "-", p.telemetry.ripple_damping, Range{ 0.001, 10.0 },
         ofOthers("damping ratio of the resonance of telemetry.ripple_resonance"));
   visit("telemetry.ripple_lag", "s", p.telemetry.ripple_lag, Range{ -1.0, 1.0 },
-        ofOthers("lag of the current's ripple behind the angle"));
+        ofOthers("time by which the ripple of the current lags behind the angle"));
   visit("telemetry.ripple_fastest", "rad/s", p.telemetry.ripple_fastest, Range{ 0.0, 100.0 },
-        ofOthers("joint speed up to which the twin predicts the ripple; it predicts none beyond"));
+        ofOthers("largest joint speed at which the twin predicts the ripple"));
   visit("telemetry.current_deviation", "A", p.telemetry.current_deviation, Range{ 0.0, 1000.0 },
-        ofOthers("rms difference between measured and predicted current of a healthy joint"));
+        ofOthers("rms difference between measured and predicted current of a sound joint"));
   visit("telemetry.effort", p.telemetry.effort,
-        ofOthers("effort of a measured joint: current of the motor [A]; joint_torque: torque of the motor times the "
-                 "ratio [N.m]; motor_torque: torque of the motor at its shaft [N.m]"));
+        ofOthers("effort of a measured joint; current: current of the motor [A]; joint_torque: torque of the motor "
+                 "times the ratio [N.m]; motor_torque: torque of the motor at its shaft [N.m]"));
   visit("telemetry.load", p.telemetry.load,
-        ofOthers("load of a measured joint; model: weight and inertia from section output; load_torque: the same plus "
-                 "the received load torque; target_moment: only the received torque; arm: torque of links and payload "
-                 "from the motion of all joints"));
+        ofOthers("load of a measured joint; model: weight and inertia from section output; load_torque: weight, "
+                 "inertia and the received load torque; target_moment: only the received torque; arm: torque of links "
+                 "and payload from the motion of all joints"));
 }
 
 template <class P, class Visitor>
@@ -339,12 +351,13 @@ void visitObserver(P& p, Visitor& visit)
   visit("observer.output_angle_noise", "rad", p.observer.output_angle_noise, Range{ 1e-9, 1.0 },
         ofOthers("rms noise of the measured joint angle"));
   visit("observer.motor_angle_noise", "rad", p.observer.motor_angle_noise, Range{ 1e-9, 1.0 },
-        ofOthers("rms noise of the measured motor angle, if it is measured"));
+        ofOthers("rms noise of the motor angle, if it is measured"));
   visit("observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
-        ofOthers("white noise of the motor torque estimated from the current: rms of a reading times the square root "
-                 "of the sampling period"));
-  visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
-        ofOthers("white noise of the load torque: rms of a reading times the square root of the sampling period"));
+        ofOthers("white noise of the motor torque estimated from the current: rms noise of a reading times the square "
+                 "root of the sampling period"));
+  visit(
+      "observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
+      ofOthers("white noise of the load torque: rms noise of a reading times the square root of the sampling period"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
         ofOthers("rms change of the unmodelled torque at the motor in a second"));
 }
@@ -353,9 +366,9 @@ template <class P, class Visitor>
 void visitComparison(P& p, Visitor& visit)
 {
   visit("comparison.friction_tolerance", "-", p.comparison.friction_tolerance, Range{ 0.01, 10.0 },
-        ofOthers("largest relative difference of a sound joint's friction from the twin's"));
+        ofOthers("largest relative difference of a sound joint's friction from that of the twin"));
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
-        ofOthers("largest relative difference of a sound joint's torsion from the twin's"));
+        ofOthers("largest relative difference of a sound joint's torsion from that of the twin"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
         ofOthers("relative repeatability of torsion, and relative agreement of friction between the joints of an arm"));
 }

@@ -77,14 +77,15 @@ void visitManufacture(P& p, Visitor& visit)
         "seed of the pitch deviations: each seed stands for one gear");
   visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
         "none, or the absolute path of a CSV file (space, deviation [m]) that replaces deviation and seed");
-  visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
-        "x and y of the centre of the flexspline's teeth from the axis of its bore, in the axes of the housing");
+  visit(
+      "manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
+      "x and y of the centre of the flexspline's teeth, relative to the axis of its bore, in the axes of the housing");
   visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, ERROR_SHIFT,
-        "x and y of the centre of the circular spline's spaces from the output's axis, at output angle 0");
+        "x and y of the centre of the circular spline's spaces, relative to the output's axis, at output angle 0");
   visit("manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, ERROR_SHIFT,
-        "out-of-round of the bent circular spline: first cos 2a + second sin 2a of the radius, a = angle from space 0");
+        "e1 and e2 of the bent circular spline, whose radius changes by e1 cos 2a + e2 sin 2a, a = angle from space 0");
   visit("manufacture.wave_generator_eccentricity", "m", p.manufacture.wave_generator_eccentricity, ERROR_SHIFT,
-        "centre of the wave generator's ellipse from the motor's axis, along the major and the minor axis");
+        "centre of the wave generator's ellipse, relative to the motor's axis, along the major and the minor axis");
   visit("manufacture.wave_generator_ellipticity", "m", p.manufacture.wave_generator_ellipticity, ERROR_SHIFT,
         "amplitude of the wave generator minus gear.wave_amplitude, to which the teeth were cut");
 }
@@ -92,8 +93,9 @@ void visitManufacture(P& p, Visitor& visit)
 template <class P, class Visitor>
 void visitRing(P& p, Visitor& visit)
 {
-  visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
-        ofOthers("mass of the toothed rim, equal for all teeth; only the dynamic ring uses it"));
+  visit(
+      "ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
+      ofOthers("mass of the toothed rim, of which each tooth has an equal part; only the dynamic ring uses this mass"));
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
   visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 },
@@ -103,7 +105,8 @@ void visitRing(P& p, Visitor& visit)
   visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
         "bending stiffness of a segment of the rim");
   visit("ring.bending_law", p.ring.bending_law,
-        "rotation that bending resists; curvature: between neighbouring segments; absolute: of each segment from rest");
+        "rotation that the bending stiffness resists; curvature: that between neighbouring segments; absolute: that of "
+        "each segment from rest");
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
         "loss factor of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest stored "
         "energy; 0 = elastic");
@@ -125,10 +128,10 @@ void visitContact(P& p, Visitor& visit)
   visit("contact.damping", "N.s/m", p.contact.damping, Range{ 0.0, 1e6 },
         "damping between wave generator and flexspline for each tooth");
   visit("contact.law", p.contact.law,
-        "direction of the contact force; normal: along the true normal of the ellipse; polar: along the normal at the "
-        "polar angle of the tooth (an approximation of the thesis)");
+        "direction of the contact force; normal: true normal of the ellipse; polar: normal at the polar angle of the "
+        "tooth (an approximation of the thesis)");
   visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
-        "width of the contact's smooth (C1) onset, with contact.support = springs; 0 = exact law");
+        "depth over which the contact force sets in smoothly (C1), with contact.support = springs; 0 = exact law");
   visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
         "coefficient of friction between the bearing's outer race and the flexspline");
   visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
@@ -145,33 +148,33 @@ void visitMesh(P& p, Visitor& visit)
   visit("mesh.tangent_angle", "rad", p.mesh.tangent_angle, Range{ 0.0, 1.4 },
         "double arc: angle between the common tangent of both arcs and the axis of the tooth");
   visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
-        "double arc: length of the common tangent in the tooth's height, at mid-height");
+        "double arc: part of the tooth's height, about mid-height, along which the common tangent is the flank");
   visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
         "half the clearance at full engagement; < 0 interference");
   visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
         "depth of engagement over which a tooth's stiffness grows from zero to mesh.stiffness");
   visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 },
-        "width of the contact's smooth (C1) onset; 0 = exact law");
+        "depth over which the contact force sets in smoothly (C1); 0 = exact law");
   visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 },
         "coefficient of flank friction at rest");
   visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
         ofOthers("coefficient of flank friction in sliding"));
   visit("mesh.stribeck_velocity", "m/s", p.mesh.stribeck_velocity, Range{ 1e-9, 1e3 },
-        ofOthers("sliding speed of the transition from static to kinetic friction"));
+        ofOthers("sliding speed at which friction changes from static to kinetic (Stribeck)"));
 }
 
 template <class P, class Visitor>
 void visitCup(P& p, Visitor& visit)
 {
   visit("cup.torsion_stiffness", "N.m/rad", p.cup.torsion_stiffness, Range{ 1.0, 1e9 },
-        "slopes of the cup's torque over its mean rotation: below, between and above the breakpoints");
+        "slopes of the cup's torque over its mean rotation, below, between and above the breakpoints");
   visit("cup.torsion_breakpoints", "N.m", p.cup.torsion_breakpoints, Range{ 0.0, 1e6 },
         "torques at which the slope of the cup changes, ascending");
   visit("cup.wall_stiffness", "N.m/rad", p.cup.wall_stiffness, Range{ 1.0, 1e9 },
         "stiffness of the cup's wall and diaphragm, which cracks and buckling of the cup reduce; more than "
         "cup.torsion_stiffness");
   visit("cup.friction_torque", "N.m", p.cup.friction_torque, Range{ 0.0, 1e4 },
-        ofOthers("dry friction in parallel to the cup's spring: half the height of its torsion loop"));
+        ofOthers("dry friction in parallel to the cup's spring: half the height of the hysteresis loop of the cup"));
   visit("cup.friction_angle", "rad", p.cup.friction_angle, Range{ 0.0, 1.0 },
         ofOthers("twist after a reversal over which cup.friction_torque builds up; 0 = at once"));
 }
@@ -184,10 +187,10 @@ void visitBearing(P& p, Visitor& visit)
   visit("bearing.load_factor", "-", p.bearing.load_factor, Range{ 0.0, 1.0 },
         "f1 of Palmgren's law of rolling friction");
   visit("bearing.race_preload", "N", p.bearing.race_preload, Range{ 0.0, 1e6 },
-        "sum of the ball forces that do not bend the rim: of the fit of the bearing's outer race, and of its bending "
-        "if race_bending_stiffness is 0");
+        "sum of the ball forces that do not bend the rim: those by the fit of the bearing's outer race and, if "
+        "race_bending_stiffness is 0, those that bend this race");
   visit("bearing.race_bending_stiffness", "N.m/rad", p.bearing.race_bending_stiffness, Range{ 0.0, 1e8 },
-        "bending stiffness of the bearing's outer race for a segment of the rim");
+        "bending stiffness of the bearing's outer race over the length of a segment of the rim");
   visit("bearing.pitch_diameter", "m", p.bearing.pitch_diameter, Range{ 1e-3, 1.0 }, "pitch diameter of the balls");
   visit("bearing.balls", "-", p.bearing.balls, Range{ 3, 1000 }, "number of balls of the bearing");
   visit("bearing.ball_diameter", "m", p.bearing.ball_diameter, Range{ 1e-4, 1.0 },
@@ -197,10 +200,10 @@ void visitBearing(P& p, Visitor& visit)
   visit("bearing.viscosity", "m^2/s", p.bearing.viscosity, Range{ 1e-7, 1e-1 },
         ofOthers("effective kinematic viscosity of the grease at bearing.viscosity_temperature"));
   visit("bearing.oil_viscosity", "m^2/s", p.bearing.oil_viscosity, Range{ 1e-6, 1e-1 },
-        ofOthers("kinematic viscosity of the grease's base oil at bearing.viscosity_temperature; with the slope it "
-                 "gives the effect of temperature"));
+        ofOthers("kinematic viscosity of the grease's base oil at bearing.viscosity_temperature; with "
+                 "bearing.viscosity_slope it determines the effect of the temperature"));
   visit("bearing.viscosity_temperature", "degC", p.bearing.viscosity_temperature, Range{ -60.0, 200.0 },
-        ofOthers("temperature for which both viscosities hold"));
+        ofOthers("temperature for which bearing.viscosity and bearing.oil_viscosity hold"));
   visit("bearing.viscosity_slope", "-", p.bearing.viscosity_slope, Range{ 0.0, 10.0 },
         ofOthers("slope m of the base oil in the viscosity-temperature chart (Walther, ASTM D341)"));
   visit("bearing.constant_share", "-", p.bearing.constant_share, Range{ 0.0, 1.0 },
@@ -211,19 +214,18 @@ template <class P, class Visitor>
 void visitStress(P& p, Visitor& visit)
 {
   visit("stress.tooth_base", "-", p.stress.tooth_base, Range{ 0.0, 0.99 },
-        ofOthers("width of a flexspline tooth at its base as a share of the pitch"));
+        ofOthers("width of a flexspline tooth at its base over the tooth pitch"));
   visit("stress.wall_thickness", "m", p.stress.wall_thickness, Range{ 1e-5, 0.1 },
         ofOthers("thickness of the cup's wall"));
   visit("stress.cup_length", "m", p.stress.cup_length, Range{ 1e-3, 1.0 },
-        ofOthers("length of the cup from the open end to the flange, teeth included; more than life.face_width"));
+        ofOthers("length of the cup from the open end to the flange, with the teeth; more than life.face_width"));
   visit("stress.coning_restraint", "-", p.stress.coning_restraint, Range{ 0.0, 1.0 },
-        ofOthers("restraint of the toothed rim's coning by the bearing: 0 none, 1 complete"));
+        ofOthers("restraint of the toothed rim's coning by the bearing; 0: none, 1: complete"));
   visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
-        ofOthers("restraint of the cup's warping by the flange: 0 none, 1 built in"));
-  visit(
-      "stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
-      ofOthers("largest stress over the nominal one in the tooth space, at the transition from the toothed rim to the "
-               "cup, and at the flange"));
+        ofOthers("restraint of the cup's warping by the flange; 0: none, 1: built in"));
+  visit("stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
+        ofOthers("largest stress over nominal stress in the tooth space, at the transition from the toothed rim to the "
+                 "cup, and at the flange"));
   visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
         ofOthers("radii of the fillets at the places of stress.concentration"));
 }
@@ -240,11 +242,11 @@ void visitFaultScale(P& p, Visitor& visit)
   visit("fault_scale.interface_friction_factor", "-", scale.interface_friction_factor, factor,
         ofFaults("interface_wear at severity 1: factor on contact.friction_coefficient"));
   visit("fault_scale.cup_crack_fraction", "-", scale.cup_crack_fraction, Range{ 0.0, 0.99 },
-        ofFaults("rear_section_crack, flange_crack at severity 1: cracked part of the circumference"));
+        ofFaults("rear_section_crack, flange_crack at severity 1: cracked share of the circumference"));
   visit("fault_scale.rear_section_share", "-", scale.rear_section_share, part,
-        ofFaults("part of the torsional compliance of the cup's wall and diaphragm that is behind the teeth"));
+        ofFaults("share of the section behind the teeth in the torsional compliance of the cup's wall and diaphragm"));
   visit("fault_scale.flange_share", "-", scale.flange_share, part,
-        ofFaults("part of the torsional compliance of the cup's wall and diaphragm that is at the flange"));
+        ofFaults("share of the section at the flange in the torsional compliance of the cup's wall and diaphragm"));
   visit("fault_scale.cup_crack_friction_factor", "-", scale.cup_crack_friction_factor, factor,
         ofFaults("rear_section_crack, flange_crack at severity 1: factor on cup.friction_torque"));
   visit("fault_scale.viscosity_factor", "-", scale.viscosity_factor, Range{ 0.01, 100.0 },
@@ -254,37 +256,38 @@ void visitFaultScale(P& p, Visitor& visit)
   visit("fault_scale.tooth_wear_depth", "m", scale.tooth_wear_depth, depth,
         ofFaults("tooth_wear at severity 1: wear of each flank along its normal"));
   visit("fault_scale.tooth_compliance_share", "-", scale.tooth_compliance_share, Range{ 0.01, 1.0 },
-        ofFaults("share of the flexspline's tooth bending in the compliance of a tooth pair"));
+        ofFaults("share of the bending of the flexspline's tooth in the compliance of a tooth pair"));
   visit("fault_scale.pitted_fraction", "-", scale.pitted_fraction, part,
-        ofFaults("pitting at severity 1: part of the flank's width that no longer carries load"));
+        ofFaults("pitting at severity 1: share of the flank's width that no longer carries load"));
   visit("fault_scale.pitted_friction_factor", "-", scale.pitted_friction_factor, factor,
         ofFaults("pitting at severity 1: factor on the friction of the pitted tooth's flanks"));
   visit("fault_scale.wave_generator_wear_depth", "m", scale.wave_generator_wear_depth, depth,
         ofFaults("wave_generator_wear at severity 1: reduction of the major semi-axis"));
   visit("fault_scale.race_fit_stiffness", "N/m", scale.race_fit_stiffness, Range{ 0.0, 1e12 },
-        ofFaults("reduction of bearing.race_preload per reduction of the wave generator's mean radius"));
+        ofFaults("reduction of bearing.race_preload over reduction of the wave generator's mean radius"));
   visit("fault_scale.race_bending_preload", "N", scale.race_bending_preload, Range{ 0.0, 1e6 },
-        ofFaults("part of bearing.race_preload that bends the race; wear does not reduce it"));
+        ofFaults("part of bearing.race_preload that bends the race, which wear does not reduce"));
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
-        ofFaults("cracks of the rim at severity 1: ratio of depth to the rim's thickness"));
+        ofFaults("crack of the rim at severity 1: depth of the crack over the thickness of the rim"));
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        ofFaults("flexspline_crack: number of segments on either side over which the crack depth decreases to zero"));
+        ofFaults(
+            "flexspline_crack: number of segments on each side over which the depth of the crack decreases to zero"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
         ofFaults("buckling at severity 1: relative reduction of the stiffness of the cup's wall"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,
         ofFaults("buckling at severity 1: radial amplitude of the permanent waves of the free rim"));
   visit("fault_scale.buckling_waves", "-", scale.buckling_waves, Range{ 2, 20 },
         ofFaults("number of waves around the buckled rim"));
-  visit(
-      "fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
-      ofFaults("ratcheting at severity 1: offset of the circular spline's centre from its axis, towards its space 0"));
+  visit("fault_scale.ratcheting_eccentricity", "m", scale.ratcheting_eccentricity, Range{ 0.0, 1e-4 },
+        ofFaults(
+            "ratcheting at severity 1: offset of the circular spline's centre from the drive's axis, towards space 0"));
   visit("fault_scale.ratcheting_tip_loss", "m", scale.ratcheting_tip_loss, depth,
         ofFaults("ratcheting at severity 1: reduction of the height of every tooth"));
   visit("fault_scale.spall_depth", "m", scale.spall_depth, depth,
-        ofFaults("spalls in the bearing at severity 1: depth"));
+        ofFaults("depth of a spall in the bearing at severity 1"));
   visit("fault_scale.spall_length", "m", scale.spall_length, Range{ 1e-5, 1e-2 },
-        ofFaults("spalls in the bearing: length along the race or on the ball"));
+        ofFaults("length of a spall in the bearing, along the race or on the ball"));
   visit("fault_scale.cage_deflection", "m", scale.cage_deflection, depth,
-        ofFaults("bearing_cage at severity 1: deflection of the outer race at the ball that does not carry"));
+        ofFaults("bearing_cage at severity 1: deflection of the outer race at the ball that carries no load"));
 }
 }  // namespace hjt
