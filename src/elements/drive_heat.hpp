@@ -18,8 +18,7 @@ namespace hjt
 ///       G, G_a  conductances [W/K]; P_f  friction, P_m  copper loss of the motor, P_0  standby power [W]
 ///
 /// A step of any length is exact for constant powers and surroundings. It uses that the two modes of the symmetric
-/// problem in sqrt(C) T decay independently. Without losses to the surroundings (G_a = 0) heat is conserved to
-/// rounding.
+/// problem in sqrt(C) T decay independently. Without losses (G_a = 0) heat is conserved to rounding.
 class DriveHeat
 {
 public:

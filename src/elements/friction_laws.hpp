@@ -21,8 +21,7 @@ struct FrictionTerm
   Eigen::Vector2d slip;  ///< slip speed per motor and output speed [m/rad] or [-]
 };
 
-/// Dry frictions in storage of fixed size, with one array for each quantity, so that loops vectorise. Zeros fill the
-/// last pack of PACK terms.
+/// Dry frictions in storage of fixed size, one array for each quantity. Zeros fill the last pack of PACK terms.
 class FrictionTerms
 {
 public:
@@ -209,9 +208,8 @@ public:
     return parameters_.viscosity * friction * std::sqrt(friction);
   }
 
-  /// x^(2/3) for finite x > 0 with a relative error of 1e-14, as x times its reciprocal cube root. The first guess of
-  /// this root has a third of the exponent (error 4 %). A first step of the series of (1 - e)^(-1/3) reduces the error
-  /// to 2e-6, a second step to rounding.
+  /// x^(2/3) for finite x > 0 with a relative error of 1e-14, as x times its reciprocal cube root. The root starts with
+  /// a third of the exponent (error 4 %). Two steps of the series of (1 - e)^(-1/3) reduce the error to rounding.
   static double twoThirdsPower(double x) noexcept
   {
     constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // with it the first guess for 1 is 1

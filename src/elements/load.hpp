@@ -9,8 +9,7 @@ namespace hjt
 {
 /// Load of the output: inertia, friction and gravity (thesis eq. 7.37-7.38 with corrected brackets).
 ///
-/// Energy of gravity:  U = -m g l cos(phi - phi_g) [J], phi output angle, phi_g angle at which the load hangs straight
-/// down, m g l output.gravity_torque
+/// Energy of gravity [J]:  -m g l cos(phi - phi_g), phi output angle, phi_g angle at which the load hangs straight down
 class Load
 {
 public:

@@ -11,9 +11,8 @@ namespace hjt
 {
 /// Motor with its amplifier: torque at the shaft for a commanded torque.
 ///
-/// The torque limit clamps the command. Over the last two per cent before the speed limit, an accelerating torque
-/// decreases linearly to zero, but a braking torque does not. The current follows the resulting torque with a
-/// first-order lag.
+/// The torque limit clamps the command. Over the last two per cent before the speed limit, an accelerating torque, but
+/// no braking torque, decreases linearly to zero. The current has a first-order lag.
 ///
 /// Shaft:   T (1 + r sin 6 p theta) - T_c sin n theta; the second term derives from U = -(T_c / n) cos n theta
 /// where    theta  motor angle                                                                        [rad]
@@ -133,9 +132,8 @@ public:
     bool touches{};   ///< whether the shaft touched the pin at the preceding update
   };
 
-  /// Moves the middle of the play if the brake slips. `angle`: motor angle [rad]; `push`: motor speed, or torque on a
-  /// shaft at rest, of which only the sign counts. @returns the torque that holds the shaft against `push` in the step
-  /// around this instant [N.m].
+  /// Moves the middle of the play if the brake slips. `angle`: motor angle [rad]; `push`: sign of the motor's speed or,
+  /// at rest, of the torque on it. @returns the holding torque in the step around this instant [N.m].
   double hold(bool engaged, double angle, double push, Pin& pin) const noexcept
   {
     if (!engaged)

@@ -88,8 +88,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
   }
   else
   {
-    // The direction that each segment would have if the rim were bent as at rest is the direction of the preceding
-    // segment, turned by a pitch.
+    // If the rim were bent as at rest, each segment would have the direction of the preceding one, turned by a pitch.
     const double c = rest_cos_;
     const double s = rest_sin_;
     const int before = 2 * shape.previous(0);

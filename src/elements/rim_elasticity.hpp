@@ -9,8 +9,7 @@
 
 namespace hjt
 {
-/// Axial stiffness of the flexspline rim between neighbouring teeth (thesis eq. 5.33-5.34 with a missing plus sign
-/// added).
+/// Axial stiffness of the rim between neighbouring teeth (thesis eq. 5.33-5.34 with a missing plus sign added).
 ///
 /// Energy:  U = 1/2 sum_i k_i (d_i - d0)^2
 /// where    d_i  distance between tooth points i and i+1   [m]

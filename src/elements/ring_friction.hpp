@@ -67,9 +67,8 @@ public:
     return friction_kinetic_ + (friction_static_ - friction_kinetic_) * std::exp(-relative * relative);
   }
 
-  /// Friction coefficients for an array of sliding speeds. This function approximates exp(-q) of the Stribeck curve by
-  /// (1 + x + x^2/2)^-32 with x = q/32, which is fast. The error is below 3e-4 of the difference between static and
-  /// kinetic coefficient.
+  /// Friction coefficients for an array of sliding speeds. The exp(-q) of the Stribeck curve is approximated by (1 + x
+  /// + x^2/2)^-32, x = q/32, with an error below 3e-4 of the difference between static and kinetic coefficient.
   template <class Speeds>
   Speeds coefficients(const Speeds& sliding_speeds) const noexcept
   {
@@ -121,8 +120,7 @@ private:
 ///       theta   motor angle, while the output turns at the velocity ratio [rad]
 ///       eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth [-]
 ///
-/// The law is exact for a moment that alternates about zero, as the wave's moment does. It treats a constant part of
-/// the moment as alternating too.
+/// The law is exact for a moment that alternates about zero, like the wave's. It treats all moments as alternating.
 class FlexingLoss
 {
 public:

@@ -20,8 +20,7 @@ struct ToothPose
   double zeta;
 };
 
-/// Position of tooth i at mid-height. `h`, `j`: its neighbours; `axis_x`, `axis_y`: unit vector of the axis of its
-/// space.
+/// Position of tooth i at mid-height. `h`, `j`: its neighbours; `axis_x`, `axis_y`: direction of its space.
 inline ToothPose poseOf(const double* point, double mid_height, int h, int i, int j, double axis_x,
                         double axis_y) noexcept
 {
@@ -228,8 +227,7 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     const ToothEngagement& tooth = contact.place;
     const FlankLaw& at = contact.law;
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
-    // The tooth tilts with the chord between its neighbours. The couple on the tooth therefore acts on these neighbours
-    // along the normal of the chord.
+    // The tooth tilts with its chord. Its couple therefore acts on the neighbours along the normal of the chord.
     const Eigen::Vector2d& normal = tooth.chord.normal;
     const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
     sum.teeth.segment<2>(2 * i) -= gradient;

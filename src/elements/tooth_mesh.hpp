@@ -126,8 +126,7 @@ public:
   void pairAtRest(const DrivePosition& position, RingShape& shape) const noexcept;
 
   /// Assigns the nearest space to every tooth that touches no flank. If a tooth in contact changed its space, the
-  /// energy would jump. @returns the number of teeth that changed their space through a tip, below the circular
-  /// spline's tip circle.
+  /// energy would jump. @returns the number of teeth that passed over a tip of the circular spline.
   int pairNearest(const DrivePosition& position, RingShape& shape) const noexcept;
 
   ToothPlace place(const RingShape& shape, const DrivePosition& position, int i) const noexcept;

@@ -64,16 +64,14 @@ private:
 
 /// Contact of the flexspline's inner rim with the wave generator, an ellipse with the semi-axes r0 + w and r0 - w,
 /// turned by its angle theta. r0 is the rim's inner radius plus the fit and its thermal expansion. Errors of
-/// manufacture add to the amplitude w (ellipticity) and move the centre of the ellipse off its axis of rotation
-/// (eccentricity).
+/// manufacture change the amplitude w (ellipticity) and move the centre off the axis (eccentricity).
 ///
 /// Energy (normal):  U = sum_i k_i r(depth_i - gap_i), depth_i inside the ellipse along its normal. With springs r is
 ///                   that of ContactRamp, with balls that of HertzContact. Single balls: see SingleBalls
 /// Law (polar):      F_i = k_i max(depth_i, 0) along atan2(a^2 y, b^2 x), depth from the point (a cos psi, b sin psi)
 ///                   (thesis eq. 5.11-5.23). It has no potential; only the thesis' insertion is computed with it. The
 ///                   tangent omits the unsymmetric part, which costs some Newton iterations.
-/// where             a = r0 + w, b = r0 - w [m]; psi: angle of the tooth [rad]; x, y: its position [m]; Z balls, N
-/// teeth
+/// where             a = r0 + w, b = r0 - w; psi, x, y  angle and position of the tooth; Z balls, N teeth
 ///                   k_i  stiffness at each tooth, >= 0: of its spring [N/m], or Z/N times that of a ball [N/m^1.5]
 ///                   gap_i  wear of rim and race at the tooth, plus the sag of a faulty bearing's outer race [m]
 class WaveGeneratorContact
@@ -123,8 +121,7 @@ public:
   /// Whether the stiffness jumps where a tooth makes contact.
   bool hasKinks() const noexcept { return support_ == SupportKind::SPRINGS; }
 
-  /// Shortens the major semi-axis at lobe 0 by `lobe` and at lobe 1 by `other_lobe` [m]. The minor axis does not
-  /// change.
+  /// Shortens the major semi-axis at lobe 0 by `lobe`, at lobe 1 by `other_lobe` [m]. The minor axis stays.
   void wear(double lobe, double other_lobe) noexcept;
 
 private:

@@ -37,8 +37,7 @@ inline double closestPointStep(double a, double b, double x, double y, double c,
   return -slope / bend;
 }
 
-/// Whether the point is near enough for `closestPointNear`: its distance from the ellipse is less than 2 % of the
-/// semi-axes.
+/// Whether the distance of a point from the ellipse is less than 2 % of the semi-axes, as closestPointNear requires.
 inline bool isNear(double a, double b, double x, double y) noexcept
 {
   constexpr double NEAR_POINT = 0.04;
@@ -48,8 +47,7 @@ inline bool isNear(double a, double b, double x, double y) noexcept
 }
 
 /// Point of the ellipse with the semi-axes a and b that is closest to a nearby point (x, y). Newton's method on the
-/// eccentric angle solves thesis eq. 5.8, which the thesis approximates. The angle is stored as a unit vector, so that
-/// no trigonometric function is needed.
+/// eccentric angle solves thesis eq. 5.8, which the thesis approximates. The angle is stored as a unit vector.
 ///
 /// The first guess has an error of relative depth times squared eccentricity, about 1e-5 rad for a real wave generator.
 /// A Newton step of size e leaves an error of 0.02 e^2, so that one step reaches 1e-10 rad. The code has no branches

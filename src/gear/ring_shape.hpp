@@ -95,12 +95,10 @@ inline void repeatHalfTurned(Eigen::VectorXd& vectors) noexcept
   vectors.tail(half) = -vectors.head(half);
 }
 
-/// Deformed ring: the tooth points, the segments between them, and the space of the circular spline that each tooth
-/// faces.
+/// Deformed ring: tooth points, segments between them, and the space of the circular spline that each tooth faces.
 ///
-/// If the model repeats after half a turn, the shape of the ring repeats too. Then `solved` is half the number of
-/// teeth, and all elements compute the first half of the teeth only. The points of the other half have the opposite
-/// sign.
+/// If the model repeats after half a turn, `solved` is half the number of teeth, and all elements compute the first
+/// half of the teeth only. The points of the other half have the opposite sign.
 struct RingShape
 {
   explicit RingShape(int teeth)
@@ -120,12 +118,10 @@ struct RingShape
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Computes directions and lengths from the points of the solved teeth. Computes the other half of all values by
-  /// symmetry.
+  /// Computes directions and lengths from the points of the solved teeth, and the other half of all values.
   void updateGeometry() noexcept;
 
-  /// Computes the spaces of the other half of the teeth from those of the solved teeth. `spaces`: number of spaces of
-  /// the circular spline.
+  /// Computes the spaces of the other half of the teeth. `spaces`: number of spaces of the circular spline.
   void repeatSpaces(int spaces) noexcept;
 
   Chord chord(int i) const noexcept

@@ -24,8 +24,7 @@ double involuteHalfWidth(double radius, double reference, double pressure_angle,
   return radius * std::sin(half_angle);
 }
 
-/// Flank of a double-arc tooth. `fall`: half thickness at mid-height minus half thickness at the height `y` above it
-/// [m].
+/// Flank of a double-arc tooth. `fall`: half thickness at mid-height minus that at `y` above it [m].
 class DoubleArc
 {
 public:
@@ -126,8 +125,7 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
       const DoubleArc arc(mesh, gear, path);
       sample([&](double down) { return -arc.fall(tip - down); },
              [](double) { return -std::numeric_limits<double>::infinity(); });
-      // The space is the envelope of the tooth along its path. Below the deepest position of the tip it has the tip's
-      // width.
+      // The space is the envelope of the tooth along its path. Beyond the reach of the tip it has the tip's width.
       space.tail(beyond).setConstant(tooth[0]);
       for (int drop = 0; drop <= intervals; ++drop)
       {

@@ -20,8 +20,8 @@ namespace hjt
 ///
 /// where tau = 2 psi, psi = angle of the tooth from the major axis [rad]; w0 = gear.wave_amplitude, r0 = inner radius
 /// of the rim, z_t = height of a tooth's middle above it [m]; Z_CS, Z_FS = teeth of circular spline and flexspline. The
-/// path follows from the wave w0 cos 2 psi, the displacement -(w0/2) sin 2 psi of the rim with the tilt of the tooth,
-/// and the difference of the pitches.
+/// path follows from the wave w0 cos 2 psi, the displacement -(w0/2) sin 2 psi of the rim, the tilt of the tooth and
+/// the pitches.
 class EngagementPath
 {
 public:
@@ -45,12 +45,10 @@ private:
 /// trapezoid   straight flanks at the flank angle.
 /// involute    the flanks of two rigid gears with equal base pitch. The pressure angle is the flank angle at mid-height
 ///             of the tooth at rest.
-/// cycloid     each flank is the path of the tooth at half scale. The flank of the space is turned by 180 degrees.
-/// These
-///             flanks touch along the whole path (Ishikawa's similar curves).
+/// cycloid     each flank is the path of the tooth at half scale, for the space turned by 180 degrees. These flanks
+///             touch along the whole path (Ishikawa's similar curves).
 /// double_arc  tooth: a straight tangent at mid-height, a convex arc above and a concave arc below. Their radius gives
-/// the
-///             tip the slope of the path at entry. Space: the envelope of the tooth along the path.
+///             the tip the slope of the path at entry. Space: the envelope of the tooth along the path.
 struct FlankShapes
 {
   /// `intervals`: number of steps from entry to full engagement. The space has `beyond` additional steps.
@@ -80,8 +78,8 @@ struct HalfClearance
 ///             t, s    half thickness of the tooth at height y, half width of its space; y is within
 ///                     their common height                                               [m]
 ///
-/// A table holds the minimum from entry to a little beyond full engagement. A C2 spline interpolates the table and
-/// continues straight at its ends.
+/// A table holds the minimum from entry to a little beyond full engagement. A C2 spline, straight at its ends,
+/// interpolates the table.
 class ToothProfile
 {
 public:

@@ -23,8 +23,7 @@ struct JointInputs
   double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// The whole joint: ring, motor, bearing, load and frictions. Solvers do not change the model. JointFaults changes its
-/// own copy.
+/// The whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes it, in a copy of its own.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);
@@ -43,8 +42,7 @@ struct JointModel
            motor.coggingEnergy(position.wave_generator_angle);
   }
 
-  /// Torques on motor and output except friction [N.m]. `motor_torque`: torque of the motor [N.m]; `load_torque`: see
-  /// JointInputs.
+  /// Torques on motor and output except friction [N.m]. `motor_torque`: torque of the motor.
   Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position, double motor_torque,
                          double load_torque) const noexcept
   {
@@ -86,8 +84,7 @@ struct JointModel
   /// Updates the friction for another `running` at an unchanged ring.
   void frictionAt(const Running& running, JointFriction& friction) const noexcept;
 
-  /// Computes all friction from the RingFrictionResponse of a table. `cup_slip`: derivatives of the rim's mean rotation
-  /// by motor and output angle [-].
+  /// Computes all friction from the RingFrictionResponse of a table. `cup_slip`: see CupFriction::addTerm.
   void friction(const RingFrictionResponse& ring_response, const Eigen::Vector2d& cup_slip, const Running& running,
                 JointFriction& friction) const noexcept;
 

@@ -127,8 +127,7 @@ private:
 
 /// Sum of all conservative elements of the ring.
 ///
-/// Assignment, `edit` and `setMeshed` change the model and its version. Solvers compare versions to discard results of
-/// an earlier model.
+/// Assignment, `edit` and `setMeshed` change the model and its version. Solvers compare versions.
 class RingModel
 {
 public:

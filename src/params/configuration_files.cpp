@@ -54,8 +54,7 @@ fs::path libraryDirectory()
 fs::path packageDirectory()
 {
   // The executable PREFIX/lib/harmonic_joint_twin/joint_twin and the library PREFIX/lib/libharmonic_joint_twin_core.so
-  // belong to PREFIX/share/harmonic_joint_twin. In a development space, `config` there is a link to that of the
-  // sources.
+  // belong to PREFIX/share/harmonic_joint_twin. In a development space, its `config` is a link.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path libraries = libraryDirectory();
@@ -150,8 +149,7 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// Value of an unquoted text by the rules of rosparam, except that every decimal number is a number. In rosparam 1e-6
-/// is a text.
+/// Value of an unquoted text by the rules of rosparam, except that 1e-6, a text in rosparam, is a number.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
   if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))

@@ -26,7 +26,6 @@ std::string findConfiguration(const std::string& name, const std::filesystem::pa
 /// Adds `values` to `map`. They replace values of equal keys.
 void putOver(const ParameterMap& values, ParameterMap& map);
 
-/// Completes the path of the file that indicators.signatures names relative to the default configuration in
-/// `directory`.
+/// Completes the path of indicators.signatures, relative to the default configuration in `directory`.
 void findNamedFiles(const std::filesystem::path& directory, ParameterMap& map);
 }  // namespace hjt

@@ -23,8 +23,7 @@ namespace hjt
 /// Required form of each entry in the list of faults, for error messages.
 constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset: ...}";
 
-/// Visitor of visitFields that fills the fields from a map. It collects all errors, so that the user sees them
-/// together.
+/// Visitor of visitFields that fills the fields from a map and collects all errors for one message.
 class FieldReader
 {
 public:

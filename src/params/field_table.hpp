@@ -441,8 +441,7 @@ void visitFields(P& p, Visitor&& visit)
 /// Hash of the parameters and faults that determine a response surface (FNV-1a, 64 bits).
 std::uint64_t surfaceParametersHash(const Parameters& parameters);
 
-/// Text of the parameters that determine a response surface, one per line. `faulty`: adds the parameters that determine
-/// the effects of faults.
+/// Text of the parameters that determine a response surface, one per line. `faulty`: for a drive with faults.
 std::string describeSurfaceParameters(const Parameters& parameters, bool faulty);
 
 /// Row of the table of parameters, with the value of the parameter.

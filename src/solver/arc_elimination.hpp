@@ -6,8 +6,7 @@ namespace hjt
 /// Elimination of the unknowns of the ring's teeth. Four separators of two teeth each divide the ring into four arcs.
 /// Each of the four lanes of a vector eliminates one arc. The chains of operations are independent and need no shuffle.
 ///
-/// In arrays of lanes, the number of lane k and entry e has the index 4 e + k. The caller owns all arrays and aligns
-/// them to 32 bytes.
+/// In arrays of lanes, entry e of lane k has the index 4 e + k. The caller owns the arrays and aligns them to 32 bytes.
 namespace arcs
 {
 constexpr int COUNT = 4;
@@ -24,8 +23,7 @@ constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
 constexpr int SCHUR = 4 * COUNT;  ///< number of unknowns of the separators
 
-/// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k. The separator of lane k is the pair of teeth
-/// before the arc of this lane.
+/// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k, whose separator is the two teeth before its arc.
 struct Layout
 {
   int steps;         ///< length of the longest arc
@@ -74,9 +72,8 @@ struct Kernels
   void (*backward[3])(const Layout& layout, const double* factors, const double* rows, const double* before,
                       const double* after, double* const* x);
 
-  /// Factors the symmetric matrix of the separators, SCHUR x SCHUR, as U^T D U without pivoting. The function reads and
-  /// overwrites the upper triangle. @returns false if a pivot is not positive, so that the matrix is not positive
-  /// definite.
+  /// Factors the symmetric matrix of the separators, SCHUR x SCHUR, as U^T D U without pivoting. Overwrites the upper
+  /// triangle. @returns false if the matrix is not positive definite.
   bool (*factor_schur)(double* matrix, SchurFactors& factors);
 
   /// Solves for the SCHUR unknowns of the separators. `b`: right-hand side, replaced by the solution.

@@ -323,8 +323,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   return true;
 }
 
-/// Whether any term slides at the speeds `before`, and at the speeds `after` is at rest or slides in the other
-/// direction.
+/// Whether any term that slides at the speeds `before` is at rest or slides the other way at the speeds `after`.
 HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
                                              const Eigen::Vector2d& after) const noexcept
 {

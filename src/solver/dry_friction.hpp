@@ -21,10 +21,9 @@ struct KickedSpeeds
 /// where  v_free  speeds without friction, v_old  speeds before the step [rad/s]; h  length of the step [s]
 ///        M  inertias, D  viscous matrix; c_j  strength and a_j  slip of dry term j; e_j  width of its regularisation
 ///
-/// The function is convex and has one minimum for any step. Friction therefore sticks, slides and reverses without a
-/// change of mode. e_j rounds the kink at rest over slips at the motor speed `stiction_velocity`. The method is
-/// Newton's with line search. If the friction on the motor's shaft can hold the motor, the motor's speed becomes
-/// exactly zero.
+/// The function is convex and has one minimum, so friction sticks, slides and reverses without a change of mode. e_j
+/// rounds the kink at rest over slips at the motor speed `stiction_velocity`. The method is Newton's with line search.
+/// If the friction on the motor's shaft can hold the motor, the motor's speed becomes exactly zero.
 class DryFriction
 {
 public:
@@ -38,14 +37,12 @@ public:
   void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< sets the inertia of the output [kg.m^2]
 
   /// Computes the `speeds` after the step. `velocity_ratio`: output speed over motor speed while the drive runs, which
-  /// scales the regularisation of slips at the output. @returns false if the minimum was not found; `speeds` are then
-  /// invalid.
+  /// scales the regularisation of slips at the output. @returns false, with invalid `speeds`, if there is no solution.
   [[nodiscard]] bool solve(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
   /// Computes the speeds like `solve`. If a sliding term stops within the step, the step is divided at this instant.
-  /// Before the instant the term slides, and terms at rest stick. `free_momentum`: M v_free [N.m.s]; `sticking`:
-  /// working memory.
+  /// Until then terms at rest stick. `free_momentum`: M v_free [N.m.s]; `sticking`: working memory.
   KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 

@@ -105,8 +105,7 @@ public:
   /// Computes `friction()` for the present angles. `speeds`: speeds of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
 
-  /// Calls DryFriction::stopOrSlide with the present friction. On failure the returned speeds are zero and `status` has
-  /// the reason.
+  /// Calls DryFriction::stopOrSlide with the present friction. On failure `status` says so.
   KickedSpeeds stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before, const Eigen::Vector2d& momentum,
                            double dt) noexcept;
 

@@ -227,8 +227,7 @@ using namespace joint_state;
 
 namespace
 {
-// wanted phase of the joint's fastest oscillation in a substep, as a share of `phase_limit_` [-]; below 1, because
-// friction under load stiffens the joint
+// wanted phase of a substep over `phase_limit_` [-]; below 1, because friction under load stiffens the joint
 constexpr double AIM = 0.8;
 }  // namespace
 
@@ -330,8 +329,7 @@ void JointStepper::setOutputInertia(double inertia) noexcept
   dynamics_.setOutputInertia(inertia);
 }
 
-/// Increases the number of substeps if the phase of a substep exceeds `phase_limit_`. Reduces the number if the phase
-/// then still meets AIM.
+/// Increases the number of substeps if their phase exceeds `phase_limit_`. Reduces it if fewer meet AIM.
 void JointStepper::divideAgain(double output_inertia) noexcept
 {
   const double phase = frequency(output_inertia) * step_;

@@ -114,15 +114,13 @@ public:
   bool reset(double arm_torque = 0.0) noexcept;
 
   /// Advances one step under `inputs`, which act from the beginning of the step. The motor's speed limit and current
-  /// loop limit and delay the wanted torque. @returns false if the ring did not converge; the joint then rests at its
-  /// last angles.
+  /// loop limit and delay the wanted torque. @returns false if the ring did not converge; the joint then rests.
   ///
   /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal substeps.
   /// Parameters and an arm's inertia determine their number, so that live and offline runs are equal. The number is
   /// odd. A new torque of the arm then acts from the middle of the step on, as in an undivided step.
   ///
-  /// A joint at rest is not solved until an input changes. It is at rest if for REST_TIME its motor sticks and its
-  /// output moves slower than REST_SPEED.
+  /// A joint at rest (motor stuck, output slower than REST_SPEED for REST_TIME) is not solved until an input changes.
   bool step(const JointInputs& inputs) noexcept;
 
   /// Solves the full ring after a fault changed the model between two steps. The energy account counts the change of

@@ -25,8 +25,7 @@ public:
   void shift(double stiffness) noexcept;                ///< adds a stiffness to the diagonal of every tooth [N/m]
   bool factor() noexcept { return solver().factor(tangent_); }
 
-  /// Computes the tangent and its factors for `state`. Requires updateForces of this state. @returns false if the
-  /// tangent has no inverse.
+  /// Computes tangent and factors for `state`, after updateForces. @returns false if the tangent has no inverse.
   bool refactor(const RingState& state) noexcept;
 
   /// Whether the slopes in the tangent changed: either the cup is on another slope than for the rates of `state`, or a

@@ -235,8 +235,7 @@ public:
     std::size_t other_count{};
   };
 
-  /// Finds the position of two angles on the surface. @returns false and does nothing if the position is outside the
-  /// table or an angle is NaN.
+  /// Finds the position of two angles. @returns false and does nothing outside the table or for an angle that is NaN.
   bool locate(double motor_angle, double output_angle, Place& place) const noexcept;
 
   /// Whether the distance of a position from an end of the range of v is less than `share` times the range.

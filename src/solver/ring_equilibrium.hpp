@@ -17,8 +17,7 @@ namespace hjt
 ///
 /// Newton's method (NewtonSolver) starts from a prediction (RingPrediction). If a move to new angles fails, it is
 /// divided into shorter moves. If these fail too, the last state stays. An insertion that fails is repeated by
-/// minimisation of the energy (EnergyDescent). A tooth changes its space only between two solves and only if it touches
-/// no flank.
+/// minimisation of the energy (EnergyDescent). A tooth changes its space only between solves, out of contact.
 class RingEquilibrium
 {
 public:
@@ -45,13 +44,11 @@ public:
   /// Solves for the equilibrium at another position from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// Solves at another position from a guess of the tooth points [m]. The model must not have changed since the last
-  /// move.
+  /// Solves at another position from a guess of the tooth points [m]. The model must be unchanged since then.
   SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
 
   /// Minimises the energy at the target, for a ring that snaps so that `moveTo` failed. Teeth that leave their space
-  /// get the nearest space. This is slow. SolveStatus::iterations counts the steps. On failure the state does not
-  /// change.
+  /// get the nearest space. This is slow. On failure the state does not change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
   /// Calls `moveTo`, after its failure `descend`, and after the failure of `descend` `reinsert`.
@@ -77,8 +74,7 @@ public:
   /// Force by the rounding error of a coordinate of a tooth, which is the least tolerance of a solve [N].
   double rounding() const noexcept { return rounding_; }
 
-  /// Torques on wave generator and output, corrected to first order for the remaining out-of-balance forces of the
-  /// teeth [N.m].
+  /// Torques on wave generator and output, corrected to first order for the forces that remain on the teeth [N.m].
   Eigen::Vector2d torques() const noexcept;
 
   /// Derivatives of the tooth points by wave generator angle and by output angle in equilibrium [m/rad]. They belong to
@@ -86,8 +82,7 @@ public:
   const Eigen::VectorXd& byWaveGenerator() const noexcept { return now_.by_wave_generator; }
   const Eigen::VectorXd& byOutput() const noexcept { return now_.by_output; }
 
-  /// Second derivatives of the stored energy by wave generator angle and output angle, with the ring in equilibrium
-  /// [N.m/rad].
+  /// Second derivatives of the energy by wave generator and output angle, with the ring in equilibrium [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
   /// Output speed over wave generator speed at constant load, from the stiffness [-]; 0 if the output is free.

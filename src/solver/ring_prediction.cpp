@@ -205,8 +205,8 @@ void RingPrediction::guess(const DrivePosition& target, RingState& state) noexce
   }
 }
 
-/// Turns the whole state with its spaces by `pitches` tooth pitches. The result is an exact equilibrium if all teeth
-/// are equal, else a good guess.
+/// Turns the whole state with its spaces by `pitches` tooth pitches. With equal teeth the result is an exact
+/// equilibrium.
 void RingPrediction::shift(int pitches, RingState& state) noexcept
 {
   for (Eigen::VectorXd* values : { &state.shape.points, &state.by_wave_generator, &state.by_output })

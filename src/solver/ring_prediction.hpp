@@ -16,8 +16,7 @@ namespace hjt
 /// backwards, with the tangents of both states. A change of the torsion is added by the derivative by the output angle.
 /// If the ring repeats after half a turn, the prediction stores the states of the last pitches by their position in the
 /// pitch, and the guess is that of the tangent at the nearest stored state. The error of the last guess corrects the
-/// next guess as far as the last two errors were similar. They can differ, because errors by single teeth do not turn
-/// with the wave generator.
+/// next guess as far as the last two errors were similar. Errors by single teeth differ.
 class RingPrediction
 {
 public:

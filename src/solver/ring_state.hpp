@@ -55,8 +55,7 @@ void addTurned(const Combination& vectors, const Combination::Factors& here, con
                int places, double c, double s, Eigen::VectorXd& result, int teeth) noexcept;
 }  // namespace ring_vectors
 
-/// The ring at a position, with its derivatives by motor and output angle. These are all data that a failed move
-/// restores.
+/// The ring at a position, with its derivatives by motor and output angle: all data that a failed move restores.
 struct RingState
 {
   explicit RingState(const RingModel& model)

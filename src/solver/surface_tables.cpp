@@ -107,8 +107,7 @@ namespace
 {
 using Weights = std::array<double, 4>;
 
-/// Values and derivatives of the cubic B-splines of the four nearest knots. `t`: position from the second to the third
-/// knot, 0 ... 1.
+/// Values and derivatives of the cubic B-splines of the four nearest knots. `t`: position after the second knot.
 struct Spline
 {
   explicit Spline(double t) noexcept

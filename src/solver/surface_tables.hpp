@@ -74,9 +74,8 @@ struct SurfaceEnergy
   }
 };
 
-/// Result of the comparisons of a table with the full ring, up to the torque limit. They were made halfway between
-/// columns, and halfway between lines where the grid was not refined further. A miss is the largest difference between
-/// table and ring over the tolerance [-].
+/// Comparisons of a table with the full ring up to the torque limit, halfway between columns, and halfway between lines
+/// where the grid was not refined further. A miss is the largest difference over the tolerance [-].
 struct GridChecks
 {
   int made{};      ///< number of checks
@@ -170,8 +169,7 @@ public:
   const std::shared_ptr<const BallTable>& table() const noexcept { return table_; }
 
   /// Change of the gear by the ball that has dropped. Derivatives by u are at constant v and include the motion of the
-  /// balls with the wave generator. The change of the outer race's friction, a hundredth of that of the flank friction,
-  /// is neglected.
+  /// balls with the wave generator. The change of the outer race's friction, 1 % of that of the flanks, is neglected.
   struct Change
   {
     SurfaceEnergy energy;

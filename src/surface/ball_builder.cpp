@@ -26,8 +26,7 @@ using Coefficients = BallTable::Coefficients;
 /// Replaces values on an even periodic grid by the coefficients of the cubic spline through them.
 void makeRoundSpline(std::vector<Coefficients>& values)
 {
-  // The coefficients solve (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i]. The solution is a sum over the values before and
-  // after i, weighted by powers of the pole.
+  // The solution of (c[i-1] + 4 c[i] + c[i+1]) / 6 = value[i] is a sum over all values, weighted by powers of the pole.
   const double pole = std::sqrt(3.0) - 2.0;
   const std::size_t count = values.size();
   const double closed = 1.0 / (1.0 - std::pow(pole, static_cast<double>(count)));
@@ -95,8 +94,7 @@ public:
   {
   }
 
-  /// Measures the line at `v`. `values` receives the results by column, then by place. @returns false if the ring has
-  /// no equilibrium.
+  /// Measures the line at `v`. `values`: results by column, then place. @returns false without an equilibrium.
   bool measure(double v, int columns, int places, std::vector<Coefficients>& values)
   {
     bool good = ring_.insert();
@@ -162,8 +160,7 @@ private:
       return false;
     }
     const Sample whole = sample();
-    // The change of the energy c1 x + c2 x^2 + c3 x^3 + c4 x^4 has the measured slopes at x = 0 and 1, and the measured
-    // values at x = 1/2 and 1.
+    // The energy c1 x + c2 x^2 + c3 x^3 + c4 x^4 has the measured slopes at x = 0 and 1 and values at x = 1/2 and 1.
     const double at_half = 16.0 * (half.energy - sound.energy - 0.5 * c1);
     const double at_whole = whole.energy - sound.energy - c1;
     const double c2 = at_half - 5.0 * at_whole + whole.by_drop - c1;

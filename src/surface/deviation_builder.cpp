@@ -249,8 +249,8 @@ private:
   }
 
   /// Measures the deviations on the line at `v` for the wanted pitches: first at their edges, then, on the way back,
-  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks if a ring
-  /// has no equilibrium.
+  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks without an
+  /// equilibrium.
   bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const bool there = !failed_ && rings.leadTo(v, longest_way_);
@@ -442,8 +442,7 @@ private:
     const Line& line;
   };
 
-  /// Measures the line halfway between two lines for the pitches `wanted`, and more lines where the grid misses its
-  /// tolerance.
+  /// Measures the line halfway between two lines for the pitches `wanted`, and more lines where the grid is too coarse.
   void refine(Rings& rings, const Placed& below, const Placed& above, const Set& wanted, int halvings, Lines& found)
   {
     const double middle = 0.5 * (below.v + above.v);

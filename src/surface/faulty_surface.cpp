@@ -23,8 +23,7 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// The fault of a gear whose teeth are else equal, if it is the only fault and at a tooth or segment of the flexspline;
-/// null in other cases.
+/// The fault if it is the only fault, at a tooth or segment of the flexspline, and the teeth are else equal; or null.
 const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& faults)
 {
   Parameters without = parameters;
@@ -36,8 +35,7 @@ const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& 
   return local && teethAreAlike(without) ? fault : nullptr;
 }
 
-/// Surface of a fault at any tooth, made from the surface of this fault at tooth 0. The two gears differ by a turn by a
-/// number of pitches.
+/// Surface of a fault at any tooth, which is that of the fault at tooth 0, shifted by a number of pitches.
 SurfacePool::Surface shiftedSurface(const Parameters& parameters, Fault fault, const SurfaceSource& source)
 {
   const int place = fault.place;

@@ -61,13 +61,12 @@ struct DeviationBuild
   int solves{};                ///< number of solved equilibria of the ring
 };
 
-/// Tabulates the values of the ring of `actual` minus those of the ring of `equal`. The surface of `equal` has the
-/// range `lowest` ... `highest` of v [rad].
+/// Tabulates the values of the ring of `actual` minus those of the ring of `equal`, for v of `lowest` ... `highest`
+/// [rad].
 ///
 /// `repetition`: see SurfaceRing. Measured errors determine the grid as in buildSurface, but the tolerance is relative
-/// to the size of the deviations, within the accuracy of the surface. There is no table if it would have more than
-/// `max_points` points. The calling thread calls `progress`, which may be empty, with 0 ... 1. The bits of the table do
-/// not depend on the number of `threads`.
+/// to the size of the deviations, within the accuracy of the surface. `progress`, `max_points`, `threads`: see
+/// buildSurface.
 DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& equal, const JointModel& actual,
                                int repetition, double lowest, double highest,
                                const std::function<void(double)>& progress,
@@ -82,8 +81,8 @@ struct BallBuild
 
 /// Tabulates the drop of a ball by up to `deepest` [m], for v of `lowest` ... `highest` [rad].
 ///
-/// `sound`: gear without a fault of the bearing that repeats after every tooth pitch. The calling thread calls
-/// `progress`, which may be empty, with 0 ... 1. The bits of the table do not depend on the number of `threads`.
+/// `sound`: gear without a fault of the bearing that repeats after every tooth pitch. `progress`, `threads`: see
+/// buildSurface.
 BallBuild buildBallTable(const Parameters& parameters, const JointModel& sound, double deepest, double lowest,
                          double highest, const std::function<void(double)>& progress, unsigned threads = processors());
 }  // namespace hjt

@@ -199,8 +199,7 @@ constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Header of a file, with all that determines its table: code, parameters, faults, and the content of files that
-/// parameters name.
+/// Header of a file, with all that determines its table: code, parameters with the files that they name, and faults.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
   std::string text =
@@ -260,8 +259,7 @@ void tellMisses(const DeviationTable& table, const SurfaceSource& source)
 
 void tellMisses(const BallTable& /*table*/, const SurfaceSource& /*source*/) {}
 
-/// Table from the cache or, if it is not there, built and stored in the cache. Empty if the build failed; the reason
-/// was then reported to `source`.
+/// Table from the cache or, if it is not there, built and stored. Empty if the build failed (reported to `source`).
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {

@@ -26,8 +26,7 @@ class SurfacePool
 public:
   using Surface = std::shared_ptr<const ResponseSurface>;
 
-  /// `kept`: number of surfaces that stay in memory although no twin uses them, >= 1. These are the last requested
-  /// surfaces, of 8 MB each.
+  /// `kept`: number of the last requested surfaces that stay in memory even if no twin uses them, >= 1; 8 MB each.
   explicit SurfacePool(std::size_t kept) : kept_(kept) {}
   virtual ~SurfacePool() = default;
   SurfacePool(const SurfacePool&) = delete;
@@ -53,8 +52,7 @@ struct SurfaceTables
   DeviationTable deviations;
 };
 
-/// Surface of a gear from the cache or, if it is not there, built and stored in the cache. Nothing if the gear has no
-/// surface.
+/// Surface of a gear from the cache or, if it is not there, built and stored. Nothing if the gear has no surface.
 ///
 /// `model`: joint of these parameters with its faults; `faults`: text of the faults for the cache, empty without
 /// faults. If the teeth of a part differ by faults or errors of manufacture, the result contains the deviations of the
@@ -92,7 +90,6 @@ std::uintmax_t cacheLimit();
 
 /// Removes the least recently used tables (surface_*.bin, deviations_*.bin, balls_*.bin) until the remaining tables
 /// have at most `most` bytes, but never the file `kept`. Also removes temporary files that are more than an hour old. A
-/// twin can still use a removed table that it has read. @returns a sentence that says what was removed; empty if
-/// nothing was.
+/// twin can still use a removed table that it has read. @returns a sentence about the removed tables, or an empty text.
 std::string tidyCache(const std::string& directory, const std::string& kept, std::uintmax_t most);
 }  // namespace hjt

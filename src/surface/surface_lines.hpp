@@ -89,8 +89,7 @@ public:
     return std::max(largest, friction_misses / columns_);
   }
 
-  /// Largest miss of the torques between the columns of a line. `finer`: this line, measured with a multiple of the
-  /// columns.
+  /// Largest miss of the torques between the columns of a line. `finer`: the line with a multiple of its columns.
   double missOfColumns(double v, const SurfaceLine& finer) const
   {
     const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);

@@ -26,8 +26,7 @@ constexpr double COLLISION_MARGIN = 1.25;  // largest torque of the motor in a t
 
 /// Divides the flanks into groups with common friction. Two groups differ in whether the slip of a running drive and
 /// the slip of an output that turns with the motor at rest have equal signs. Each of them is divided into three groups
-/// by the size of the slip. `terms`: forces and slips of the flanks by motor and output; `velocity_ratio`: output speed
-/// over motor speed.
+/// by the size of the slip. `terms`: friction of the flanks; `velocity_ratio`: output over motor speed.
 ///
 /// If the drive runs, or if the output turns with the motor at rest, all flanks of a group slide in one direction, so
 /// that the sum of their friction is exact. The coefficient of friction, which decreases with the slip, is that of the
@@ -88,8 +87,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
 }
 
 /// Solver parameters for the tables of all drives. They are fixed, because the key of a table does not contain the
-/// solver parameters of a twin. RingEquilibrium::torques corrects the torques for the remaining forces, so that the
-/// torques are exact to rounding.
+/// solver parameters of a twin. RingEquilibrium::torques corrects the torques for the forces that remain.
 SolverParameters solverOfTables()
 {
   SolverParameters solver;
@@ -278,8 +276,7 @@ bool SurfaceRing::isMirrored()
     {
       for (int i = 0; i < PLACES && mirrored; ++i)
       {
-        // The offset of 0.3 avoids the middle and the beginning of a pitch, which are their own mirror images at no
-        // load.
+        // 0.3 avoids the middle and the beginning of a pitch, which are their own mirror images at no load.
         const double angle = pitch_ * (i + 0.3) / PLACES;
         mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
         const Node node = mirrored ? measure() : Node{};

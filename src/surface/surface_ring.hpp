@@ -86,12 +86,11 @@ public:
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
   /// Tolerance of a table's friction at the motor [N.m]: the tolerance of the motor torque. For a wave generator on
-  /// balls it is at least 1 % of the friction. A tooth that begins to touch changes the rates of all teeth by some per
-  /// cent, which no grid resolves.
+  /// balls it is at least 1 % of the friction. A tooth that begins to touch changes all rates by some per cent, which
+  /// no grid resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Friction torque of ring and bearing at the motor of a slowly running drive, with static friction of the flanks
-  /// [N.m].
+  /// Friction torque of ring and bearing at the motor of a slow drive, with static friction of the flanks [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
 
   /// Friction torque of the flanks at the motor over the coefficient of friction [N.m].

@@ -220,8 +220,7 @@ private:
     table.values = SharedValues<float>(std::move(all));
   }
 
-  /// Mirror image of a line: the line at the opposite v. Its u is a pitch minus u, and the teeth are counted in the
-  /// opposite direction.
+  /// Mirror image of a line: the line at the opposite v. Its u is a pitch minus u, and its teeth count backwards.
   Values mirrorImage(const Values& line, const ToothResponse& table) const
   {
     const double cosine = std::cos(table.pitch);

@@ -14,8 +14,7 @@
 
 namespace hjt
 {
-/// Option or argument of a function, with the rules for its values and the given values. Each call of a member adds a
-/// rule.
+/// Option or argument of a function, with the rules for its values and the given values. Each member adds a rule.
 struct Option
 {
   enum class Kind
@@ -115,8 +114,7 @@ struct ConfigurationOptions
 
 constexpr const char* COMMON_GROUP = "Common options";
 
-/// Adds the options for overlay files and assignments. The functions of Python have the argument `overlays` in their
-/// place.
+/// Adds the options for overlay files and assignments. In Python the argument `overlays` replaces these options.
 void addOptions(OptionTable& table, ConfigurationOptions& options);
 /// Adds the options for overlay files and assignments, and the option that allows overwriting files.
 void addOptions(OptionTable& table, ConfigurationOptions& options, bool& force);

@@ -66,8 +66,7 @@ public:
   /// Must be called after a reset of the joint or a change of its model.
   void restart() noexcept { started_ = false; }
 
-  /// Ring in equilibrium at the joint's present angles, valid until the joint's next step; null if there is no
-  /// equilibrium.
+  /// Ring in equilibrium at the joint's present angles, valid until the joint's next step; null without equilibrium.
   const RingEquilibrium* at(const JointDynamics& joint) noexcept
   {
     if (!joint.onSurface())

@@ -76,8 +76,7 @@ struct Twin::Impl
   Stamp step_length;
   std::int64_t instant{};  // number of the present instant: its time over step_length
   Stamp now{};
-  // An input with an earlier stamp is late. This is the present instant or, before the first step, the stamp of the
-  // reset.
+  // An input with an earlier stamp is late. This is the present instant or the stamp of the reset.
   Stamp simulated_until{};
   InputQueue queue;
   std::array<Stamp, INPUT_KINDS> in_force_since{};  // for each kind the stamp of the acting input

@@ -48,8 +48,7 @@ bool hasBearingFaults(const FaultList& faults) noexcept
 }
 
 /// Finds the only fault that changes from the list `before` to the list `after`. `growing` receives the fault with its
-/// severity in `after`. @returns false if several faults change, or if `after` has a fault of the bearing, whose table
-/// holds for all severities.
+/// severity in `after`. @returns false if several faults change, or if `after` has a fault of the bearing.
 bool grows(const FaultList& before, const FaultList& after, Fault& growing)
 {
   for (const FaultList* list : { &after, &before })
@@ -324,8 +323,7 @@ const ResponseSurface* SurfaceStages::of(const FaultList& faults) const noexcept
   return stage != stages_.end() ? stage->surface.get() : nullptr;
 }
 
-/// Obtains the surfaces of the drive with its configured faults, or starts a thread that obtains the surface of the
-/// drive with the active faults.
+/// Obtains the surfaces for the configured faults, or starts a thread that obtains the surface for the active faults.
 void Twin::Impl::prepareSurface(const SurfaceSource& source)
 {
   if (source.background)

@@ -30,8 +30,7 @@ public:
   ~SurfaceWorker();
 
   /// Requests the surface of the drive with these faults. The new surface replaces the last surface, which must not be
-  /// in use. @returns false if the thread is busy; the caller must then request again. The function does not block or
-  /// allocate.
+  /// in use. @returns false if the thread is busy; request again then. Does not block or allocate.
   bool request(const FaultList& faults) noexcept;
 
   /// Last requested surface; null if it is not ready or does not exist. The function does not block or allocate.

@@ -11,8 +11,7 @@ namespace hjt
 {
 struct Parameters;
 
-/// Kinds of faults: those of the thesis' FMECA (failure mode, effects and criticality analysis, Table 3.7), and four
-/// faults of the wave generator's bearing.
+/// Kinds of faults: those of the thesis' FMECA (Table 3.7), and four faults of the wave generator's bearing.
 enum class FaultKind : std::uint8_t
 {
   INTERFACE_WEAR,
@@ -41,8 +40,7 @@ constexpr int WHOLE_MEMBER = -1;
 /// Largest number of faults that can be active or configured at once.
 constexpr std::size_t MAX_FAULTS = 256;
 
-/// Fault of the gear. Kind and place identify a fault: a second fault of an equal kind and place replaces the severity
-/// of the first.
+/// Fault of the gear. A second fault of this kind and place replaces the severity of the first.
 struct Fault
 {
   FaultKind kind{};
@@ -168,8 +166,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset of the fault are within their ranges.
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept;
-/// Error messages for the fault with values and ranges, one per line; empty if the fault is valid. Each line begins
-/// with `key`.
+/// Error messages for the fault, one per line, each after `key`; empty if the fault is valid.
 std::string faultErrors(const Fault& fault, const Parameters& parameters, const std::string& key);
 
 /// Parses KIND:SEVERITY[:PLACE[:ONSET]]. The default of PLACE is the least allowed place. @throws ParameterError.

@@ -22,8 +22,7 @@ struct ParameterValue
 /// Map from `section.key` to value, the common form for YAML files, `--set` and the ROS parameter server.
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Top-level key of the list of faults. The map has the keys `faults.N.kind`, `faults.N.severity` and so on, with N
-/// from 0.
+/// Top-level key of the list of faults. Keys in the map are `faults.N.kind`, `faults.N.severity` ..., with N from 0.
 constexpr const char* FAULTS = "faults";
 std::string faultKey(int number);     ///< key of fault N: `faults.N`
 void eraseFaults(ParameterMap& map);  ///< removes all faults, because a new list of faults replaces the old list
@@ -42,8 +41,7 @@ void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 /// `key` and `origin`. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
 
-/// Number in `value`, which may be a text, because the parameter server holds 1e-3 as a text. Nothing if `value` is no
-/// number.
+/// Number in `value`, which may be a text as 1e-3 on the parameter server. Nothing if it is no number.
 std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
 /// Text of the value in error messages.
@@ -65,8 +63,7 @@ std::uint64_t parametersHash(const Parameters& parameters);
 /// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
-/// Reads a text of describeParameters into `map`. The faults of the text replace those of `map`. @throws ParameterError
-/// that names `source` and line.
+/// Reads a text of describeParameters into `map`. Its faults replace those of `map`. @throws ParameterError
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
 /// Table of docs/parameters.csv in Markdown, with key, type, unit, range and meaning of each parameter.

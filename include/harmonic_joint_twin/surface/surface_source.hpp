@@ -22,7 +22,6 @@ struct SurfaceSource
   bool background{};
 };
 
-/// Directory of the cache: $XDG_CACHE_HOME/harmonic_joint_twin or ~/.cache/harmonic_joint_twin; empty if there is no
-/// home directory.
+/// Directory of the cache: $XDG_CACHE_HOME/harmonic_joint_twin or ~/.cache/harmonic_joint_twin; empty without HOME.
 std::string surfaceCacheDirectory();
 }  // namespace hjt

@@ -20,8 +20,7 @@ struct FaultCounters
   std::uint64_t no_room{};   ///< faults that the twin refused because too many faults wait or are active
 };
 
-/// Faults that will set in or end, ordered by time. Faults with equal stamps stay in the order of their arrival. The
-/// storage has a fixed size.
+/// Faults that will set in or end, ordered by time. Equal stamps stay in order of arrival. The size is fixed.
 class FaultSchedule
 {
 public:

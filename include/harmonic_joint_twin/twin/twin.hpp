@@ -74,8 +74,7 @@ struct HealthReport
   MotionIndicators motion;     ///< indicators over the last turns, from the true angles
   LobeLoads lobes;             ///< loads of the lobes at the current instant
   SolverState solver_state{};  ///< state of the solver over the steps that Twin::health names
-  /// expected rms error of the mesh forces of loaded teeth at this speed and load, as the model's ring has no inertia
-  /// [N]
+  /// expected rms error of the mesh forces of loaded teeth at this speed and load, as the ring has no inertia [N]
   double mesh_force_error{};
 };
 
@@ -96,8 +95,7 @@ struct TwinCounters
   std::uint64_t command_timeouts{};  ///< number of commands that became older than input.command_timeout
 };
 
-/// The twin of one joint. Its inputs are commanded torques, and its outputs are encoder angles, tooth forces and
-/// health.
+/// The twin of one joint. Inputs are commanded torques. Outputs are encoder angles, tooth forces and health.
 ///
 /// Inputs act at their stamps, and all instants are multiples of the solver's step. Equal inputs with equal stamps
 /// therefore give equal results live, replayed and offline, for any sequence of calls of `step`. After construction no
@@ -123,8 +121,7 @@ public:
   const Parameters& parameters() const noexcept;  ///< parameters given to the constructor, without injected faults
 
   /// Restarts at rest, at the motor angle 0 and with the configured faults, at the first instant not before `stamp`.
-  /// Discards all inputs, injected faults and counts. @returns false and changes nothing if the stamp is beyond
-  /// +-MAX_STAMP.
+  /// Discards inputs, injected faults and counts. @returns false and changes nothing for a stamp beyond +-MAX_STAMP.
   bool reset(Stamp stamp) noexcept;
 
   /// Queues an input, which acts from its stamp on. The twin refuses and counts values that are not finite. A late
@@ -167,9 +164,8 @@ public:
   bool onSurface() const noexcept;
 
   ToothForces makeToothForces() const;  ///< arrays of the right size for toothForces; allocates
-  /// Computes the tooth forces at the current instant. On the response surface they come from a table of the tooth
-  /// forces or, if there is no such table, from a separate full ring. @returns false and does not change the arrays if
-  /// this ring has no equilibrium.
+  /// Computes the tooth forces at the current instant. On the response surface they come from a table of tooth forces
+  /// or, without such a table, from a separate full ring. @returns false and changes nothing if it has no equilibrium.
   bool toothForces(ToothForces& forces) noexcept;
   /// Computes the stresses of the flexspline like toothForces. `stress`: must have the size of the number of teeth.
   bool toothStress(ToothStress& stress) noexcept;
@@ -177,16 +173,14 @@ public:
   /// the last reset if `since` is not before the current instant.
   HealthReport health(Stamp since = std::numeric_limits<Stamp>::min()) const noexcept;
 
-  /// Switches the computation of indicators and assessment from the sensors' readings on or off; initially off. `reset`
-  /// discards the learned references.
+  /// Switches the computation of indicators and assessment, initially off. `reset` discards learned references.
   void watchSignals(bool on) noexcept;
   bool watchesSignals() const noexcept;  ///< whether the twin computes indicators and assessment
   /// From the next window on, estimates the slip of the bearing and computes its lines with this slip, as for a
   /// recording. This is not for a control loop, because each window stores all its samples, and steps allocate.
   void seekBearingSlip();
   const SignalIndicators& signalIndicators() const noexcept;  ///< indicators of the last window
-  /// Assessment of the last window. After an alarm the twin searches for the cause, so that the assessment is ready 50
-  /// ms after the end of the window.
+  /// Assessment of the last window. After an alarm the twin searches for the cause and is ready 50 ms after the window.
   const Assessment& assessment() const noexcept;
 
 private:

@@ -27,8 +27,7 @@ void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 
 // Faults of the rim.
 
-/// Crack in the rim behind a tooth. The crack is `severity` times fault_scale.rim_crack_depth of the rim's thickness
-/// deep.
+/// Crack in the rim behind a tooth, with a depth of `severity` times fault_scale.rim_crack_depth of the thickness.
 void crackRim(int segment, double severity, const Parameters& parameters, RingModel& ring) noexcept
 {
   const double left = 1.0 - severity * parameters.fault_scale.rim_crack_depth;
@@ -120,8 +119,7 @@ double softened(double bending, double share) noexcept
   return bending / (bending + share * (1.0 - bending));
 }
 
-/// Bending stiffness of a tooth over that of a sound tooth [-], as a cantilever whose thickness is reduced by the share
-/// `loss`.
+/// Bending stiffness of a tooth, as a cantilever, whose thickness lost the share `loss`, over that of a sound tooth.
 double thinned(double loss) noexcept
 {
   const double left = loss < 1.0 ? 1.0 - loss : 0.0;
@@ -184,8 +182,7 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
 
 // Faults of the wave generator and its bearing.
 
-/// The lobes wear because they carry the largest force. This reduces the mean radius of the wave generator and so
-/// loosens the races of the bearing.
+/// The lobes wear because they carry the largest force. The smaller mean radius loosens the bearing's races.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;

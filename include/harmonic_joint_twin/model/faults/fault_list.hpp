@@ -20,9 +20,8 @@ struct ActiveFault
 class FaultList
 {
 public:
-  /// Adds a fault, or changes the severity of the fault of this kind and place. The severity 0 removes the fault. A
-  /// fault whose severity does not change keeps its time `since`. @returns false and changes nothing if the list is
-  /// full.
+  /// Adds a fault, or changes the severity of the fault of this kind and place. The severity 0 removes the fault. An
+  /// unchanged fault keeps its time. @returns false and changes nothing if the list is full.
   bool set(const Fault& fault, std::int64_t since) noexcept;
   void clear() noexcept  ///< removes all faults
   {
