@@ -73,7 +73,6 @@ struct Chord
   double length;           ///< [m]
 };
 
-/// Copies the values of the first half of the teeth to the second half.
 template <class Values>
 void repeatHalf(Values& values) noexcept
 {
@@ -81,7 +80,6 @@ void repeatHalf(Values& values) noexcept
   std::copy(values.data(), values.data() + half, values.data() + half);
 }
 
-/// Whether the two halves of the values are equal.
 inline bool halvesAgree(const Eigen::VectorXd& values) noexcept
 {
   const Eigen::Index half = values.size() / 2;

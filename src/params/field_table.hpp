@@ -19,10 +19,8 @@ void visitMotor(P& p, Visitor& visit)
         ofOthers("moment of inertia of the wave generator"));
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
         ofOthers("Coulomb friction at the motor shaft, in addition to the friction of bearing, outer race and flanks"));
-  visit(
-      "motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
-      ofOthers(
-          "friction at the motor shaft at standstill, in addition to motor.coulomb_torque and the bearing's friction"));
+  visit("motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
+        ofOthers("friction at the motor shaft at standstill, in addition to motor.coulomb_torque and the bearing's"));
   visit("motor.stribeck_velocity", "rad/s", p.motor.stribeck_velocity, Range{ 1e-6, 1e4 },
         ofOthers("motor speed at which motor.stribeck_torque has decayed to 1/e"));
   visit("motor.presliding_angle", "rad", p.motor.presliding_angle, Range{ 0.0, 1.0 },
@@ -37,9 +35,8 @@ void visitMotor(P& p, Visitor& visit)
         ofOthers("motor speed above which the motor has no accelerating torque"));
   visit("motor.current_bandwidth", "Hz", p.motor.current_bandwidth, Range{ 0.0, 1e6 },
         ofOthers("bandwidth of the current loop, a first-order lag; 0 = no lag"));
-  visit(
-      "motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
-      ofOthers("relative change of the torque per current for each kelvin of the magnets' temperature above 25 degC"));
+  visit("motor.torque_temperature_coefficient", "1/K", p.motor.torque_temperature_coefficient, Range{ -0.01, 0.01 },
+        ofOthers("relative change of the torque per current for each kelvin of the magnets above 25 degC"));
   visit("motor.torque_ripple", "-", p.motor.torque_ripple, Range{ 0.0, 0.5 },
         ofOthers("amplitude of the torque ripple at six times the electrical frequency, relative to the torque"));
   visit("motor.pole_pairs", "-", p.motor.pole_pairs, Range{ 1, 1000 },
@@ -115,14 +112,12 @@ void visitSolver(P& p, Visitor& visit)
 {
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; a step must be a whole number of nanoseconds"));
-  visit(
-      "solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
-      ofOthers("largest allowed out-of-balance force on a tooth; in a step of motion ten times this force is allowed"));
+  visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
+        ofOthers("largest allowed out-of-balance force on a tooth; ten times this force in a step of motion"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
-        ofOthers("largest number of Newton iterations of a solve; the build of a response surface uses 20"));
-  visit(
-      "solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
-      ofOthers("largest number of halvings of a step that does not converge; the build of a response surface uses 8"));
+        ofOthers("largest number of Newton iterations of a solve; 20 when a response surface is built"));
+  visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
+        ofOthers("largest number of halvings of a step that does not converge; 8 when a response surface is built"));
   visit("solver.stiction_velocity", "rad/s", p.solver.stiction_velocity, Range{ 1e-12, 1e3 },
         ofOthers("motor speed below which friction is regularised"));
   visit("solver.scene", p.solver.scene,
@@ -139,27 +134,23 @@ void visitSensors(P& p, Visitor& visit)
         ofOthers("counts of the absolute output encoder in a turn"));
   visit("sensors.velocity_window", "s", p.sensors.velocity_window, Range{ 1e-6, 10.0 },
         ofOthers("time between the two angles from which a velocity of the encoders is computed"));
-  visit(
-      "sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
-      ofOthers(
-          "amplitude of the motor encoder's error of one period per turn, in phase with the sine of the motor angle"));
+  visit("sensors.motor_eccentricity", "rad", p.sensors.motor_eccentricity, Range{ -0.1, 0.1 },
+        ofOthers("amplitude of the motor encoder's error once per turn, in phase with the sine of the motor angle"));
   visit("sensors.motor_lines", "rad", p.sensors.motor_lines, Range{ -0.1, 0.1 },
-        ofOthers("amplitudes of the motor encoder's errors of two and four periods per turn"));
+        ofOthers("amplitudes of the motor encoder's errors twice and four times per turn"));
   visit("sensors.motor_noise", "rad", p.sensors.motor_noise, Range{ 0, 0.1 },
         ofOthers("rms noise of the motor encoder's angle in each step, before the angle is rounded to counts"));
   visit("sensors.output_eccentricity", "rad", p.sensors.output_eccentricity, Range{ -0.1, 0.1 },
-        ofOthers("amplitude of the output encoder's error of one period per turn, in phase with the sine of the output "
-                 "angle"));
+        ofOthers("amplitude of the output encoder's error once per turn, in phase with the sine of the output angle"));
   visit("sensors.output_lines", "rad", p.sensors.output_lines, Range{ -0.1, 0.1 },
-        ofOthers("amplitudes of the output encoder's errors of two and four periods per turn"));
+        ofOthers("amplitudes of the output encoder's errors twice and four times per turn"));
   visit("sensors.output_noise", "rad", p.sensors.output_noise, Range{ 0, 0.1 },
         ofOthers("rms noise of the output encoder's angle in each step, before the angle is rounded to counts"));
   visit("sensors.torque_noise", "N.m", p.sensors.torque_noise, Range{ 0, 1000 },
         ofOthers("rms noise of the motor torque estimated from the current, in each step"));
   visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
         ofOthers("resolution of the motor torque estimated from the current; 0 = no rounding"));
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 },
-        ofOthers("delay of all readings, rounded to whole steps"));
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("delay of all readings, in whole steps"));
   visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
         ofOthers("seed of the noise; equal seeds give equal noise at equal stamps"));
 }
@@ -167,8 +158,7 @@ void visitSensors(P& p, Visitor& visit)
 template <class P, class Visitor>
 void visitJoint(P& p, Visitor& visit)
 {
-  visit("joint.name", p.joint.name,
-        ofOthers("name of the joint in JointState messages; the name of its motor is NAME_motor"));
+  visit("joint.name", p.joint.name, ofOthers("name of the joint in JointState messages; its motor is NAME_motor"));
   visit("joint.hardware_id", p.joint.hardware_id, ofOthers("hardware id in /diagnostics (REP-107: the serial number)"));
 }
 
@@ -201,9 +191,8 @@ void visitIndicators(P& p, Visitor& visit)
                  "torque by this value leads to the other branch of the hysteresis loop"));
   visit("indicators.baseline_windows", "-", p.indicators.baseline_windows, Range{ 8, 10000 },
         ofOthers("number of windows at an operating point from which the twin learns the reference"));
-  visit(
-      "indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
-      ofOthers("largest number of classes of operating points with a learned reference; each needs 0.2 MB of memory"));
+  visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
+        ofOthers("largest number of classes of operating points with a reference; each needs 0.2 MB of memory"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
         ofOthers("relative repeatability of a sound drive's indicators from one recording to the next"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
@@ -234,9 +223,8 @@ void visitLife(P& p, Visitor& visit)
         ofOthers("time at rated torque and speed after which 10 % of the wave generator's bearings have failed"));
   visit("life.bearing_l50", "h", p.life.bearing_l50, Range{ 1.0, 1e6 },
         ofOthers("time at rated torque and speed after which half of the bearings have failed; more than bearing_l10"));
-  visit(
-      "life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
-      ofOthers("turns from a bearing's first spall to the end of its use, as a share of the turns before this spall"));
+  visit("life.spall_growth", "-", p.life.spall_growth, Range{ 1e-3, 10.0 },
+        ofOthers("turns from a bearing's first spall to the end of its use, over the turns before this spall"));
   visit("life.spall_spread", "-", p.life.spall_spread, Range{ 0.0, 3.0 },
         ofOthers("standard deviation, from drive to drive, of the logarithm of spall_growth"));
   visit("life.face_width", "m", p.life.face_width, Range{ 1e-4, 1.0 }, ofOthers("length of the flexspline's teeth"));
@@ -314,17 +302,17 @@ void visitTelemetry(P& p, Visitor& visit)
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         ofOthers("part of the motor's inertia whose torque the recorded load torque already contains"));
   visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of the line with two periods in a turn of the wave "
-                 "generator relative to the circular spline"));
-  visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of the line with two periods in a turn of the wave "
-                 "generator relative to the flexspline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of two periods in a turn of the motor relative to "
+                 "the circular spline"));
+  visit(
+      "telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
+      ofOthers("kinematic error times stiffness: cosine and sine of two periods in a turn relative to the flexspline"));
   visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of the line with four periods in a turn of the wave "
-                 "generator relative to the circular spline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of four periods in a turn of the motor relative to "
+                 "the circular spline"));
   visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of the line with four periods in a turn of the wave "
-                 "generator relative to the flexspline"));
+        ofOthers(
+            "kinematic error times stiffness: cosine and sine of four periods in a turn relative to the flexspline"));
   visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
         ofOthers("resonance of the load on the joint's stiffness; far below this frequency the load follows the "
                  "kinematic error, far above it the load is at rest"));
@@ -355,9 +343,8 @@ void visitObserver(P& p, Visitor& visit)
   visit("observer.torque_noise", "N.m.sqrt(s)", p.observer.torque_noise, Range{ 0.0, 1e3 },
         ofOthers("white noise of the motor torque estimated from the current: rms noise of a reading times the square "
                  "root of the sampling period"));
-  visit(
-      "observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
-      ofOthers("white noise of the load torque: rms noise of a reading times the square root of the sampling period"));
+  visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
+        ofOthers("white noise of the load torque: rms of a reading's noise times the square root of the period"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
         ofOthers("rms change of the unmodelled torque at the motor in a second"));
 }

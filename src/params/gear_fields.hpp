@@ -77,9 +77,8 @@ void visitManufacture(P& p, Visitor& visit)
         "seed of the pitch deviations: each seed stands for one gear");
   visit("manufacture.circular_spline_pitch_table", p.manufacture.circular_spline_pitch.table,
         "none, or the absolute path of a CSV file (space, deviation [m]) that replaces deviation and seed");
-  visit(
-      "manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
-      "x and y of the centre of the flexspline's teeth, relative to the axis of its bore, in the axes of the housing");
+  visit("manufacture.flexspline_eccentricity", "m", p.manufacture.flexspline_eccentricity, ERROR_SHIFT,
+        "x and y of the centre of the flexspline's teeth relative to its bore, in the axes of the housing");
   visit("manufacture.circular_spline_eccentricity", "m", p.manufacture.circular_spline_eccentricity, ERROR_SHIFT,
         "x and y of the centre of the circular spline's spaces, relative to the output's axis, at output angle 0");
   visit("manufacture.circular_spline_ellipticity", "m", p.manufacture.circular_spline_ellipticity, ERROR_SHIFT,
@@ -93,9 +92,8 @@ void visitManufacture(P& p, Visitor& visit)
 template <class P, class Visitor>
 void visitRing(P& p, Visitor& visit)
 {
-  visit(
-      "ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
-      ofOthers("mass of the toothed rim, of which each tooth has an equal part; only the dynamic ring uses this mass"));
+  visit("ring.mass", "kg", p.ring.mass, Range{ 1e-9, 1e3 },
+        ofOthers("mass of the toothed rim, spread evenly over the teeth; only the dynamic ring uses this mass"));
   visit("ring.tension_stiffness", "N/m", p.ring.tension_stiffness, Range{ 1.0, 1e13 },
         "axial stiffness of the rim between neighbouring teeth");
   visit("ring.tension_damping", "N.s/m", p.ring.tension_damping, Range{ 0.0, 1e6 },
@@ -105,8 +103,8 @@ void visitRing(P& p, Visitor& visit)
   visit("ring.bending_stiffness", "N.m/rad", p.ring.bending_stiffness, Range{ 0.0, 1e8 },
         "bending stiffness of a segment of the rim");
   visit("ring.bending_law", p.ring.bending_law,
-        "rotation that the bending stiffness resists; curvature: that between neighbouring segments; absolute: that of "
-        "each segment from rest");
+        "rotation that bending resists; curvature: that between neighbouring segments; absolute: that of a segment "
+        "from rest");
   visit("ring.loss_factor", "-", p.ring.loss_factor, Range{ 0.0, 1.0 },
         "loss factor of rim and outer race in bending: energy lost in a cycle over 2 pi times the largest stored "
         "energy; 0 = elastic");
@@ -270,8 +268,7 @@ void visitFaultScale(P& p, Visitor& visit)
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
         ofFaults("crack of the rim at severity 1: depth of the crack over the thickness of the rim"));
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        ofFaults(
-            "flexspline_crack: number of segments on each side over which the depth of the crack decreases to zero"));
+        ofFaults("flexspline_crack: number of segments on each side over which the crack's depth decreases to zero"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
         ofFaults("buckling at severity 1: relative reduction of the stiffness of the cup's wall"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,

@@ -195,7 +195,6 @@ inline __attribute__((always_inline)) Fresh freshRows(const Layout& layout, cons
   return fresh;
 }
 
-/// Computes the Weights of a tooth.
 inline __attribute__((always_inline)) void factorTooth(const Fresh& fresh, Carried& carried, Weights& out)
 {
   const Lanes a = fresh.xx + carried.d_xx;

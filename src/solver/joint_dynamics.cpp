@@ -127,7 +127,6 @@ bool JointDynamics::bringRing() noexcept
   return brought.ok();
 }
 
-/// Stores code and stage of a failed solve in `status`.
 void JointDynamics::note(const SolveStatus& solved) noexcept
 {
   if (!solved.ok())
@@ -273,7 +272,6 @@ double JointDynamics::brakeTorque(double motor_speed) noexcept
   return model_->brake.hold(inputs.brake_engaged, motor_angle_, push, now_.pin);
 }
 
-/// Effective viscosity of the bearing's grease at the present temperature [m^2/s].
 double JointDynamics::viscosity() noexcept
 {
   if (inputs.temperature != temperature_)

@@ -60,7 +60,6 @@ private:
   CyclicSolver half_solver_;  // solver for a ring that repeats after half a turn
   RingTangent tangent_;
   RingForces forces_;
-  // Contacts in the factored tangent.
   std::vector<char> factored_meshed_;
   Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact
   // Whether the rates of the last factored tangent are computed, and the results of this tangent.

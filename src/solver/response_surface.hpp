@@ -276,7 +276,6 @@ public:
     return node;
   }
 
-  /// Mesh forces of both lobes [N].
   static std::array<double, 2> lobeForces(const Place& place) noexcept;
 
   /// Table of the surface or, with several shares, of the first share.

@@ -312,7 +312,6 @@ SolveStatus RingEquilibrium::solve(const DrivePosition& target) noexcept
   return solvePredicted();
 }
 
-/// Solves from the predicted points in `now_`.
 SolveStatus RingEquilibrium::solvePredicted() noexcept
 {
   const int jumps = model_->meshed() ? model_->of<ToothMesh>().pairNearest(now_.position, now_.shape) : 0;

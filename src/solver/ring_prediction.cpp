@@ -227,7 +227,6 @@ void RingPrediction::turn(const Eigen::VectorXd& values, int pitches, Eigen::Vec
   ring_vectors::turn(values, wrapped(pitches, model_->rest.teeth()), std::cos(angle), std::sin(angle), turned);
 }
 
-/// Turns the numbers of the teeth's spaces by `pitches` tooth pitches.
 void RingPrediction::turnSpaces(const int* space, int pitches, std::vector<int>& turned) const noexcept
 {
   const int spaces = model_->gear.teeth_circular_spline;

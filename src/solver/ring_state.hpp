@@ -29,7 +29,6 @@ int signsChanged(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int teeth) 
 /// `s`. `places`: 0 ... number of teeth - 1.
 void turn(const Eigen::VectorXd& values, int places, double c, double s, Eigen::VectorXd& turned) noexcept;
 
-/// Linear combination of three vectors.
 struct Combination
 {
   const double* a;

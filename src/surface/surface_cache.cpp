@@ -329,7 +329,6 @@ std::string ballHeader(const Parameters& parameters, const std::string& faults)
   return header(parameters, faults + "a ball that drops by " + numberText(deepestDrop(parameters)));
 }
 
-/// BallTable, see obtain.
 std::optional<BallTable> obtainBallTable(const Parameters& parameters, const JointModel& model,
                                          const std::string& faults, const SurfaceTable& surface,
                                          const SurfaceSource& source)

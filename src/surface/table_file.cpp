@@ -311,7 +311,6 @@ bool parseBody(BodyReader& reader, BallTable& table)
   return true;
 }
 
-/// See readTable.
 template <class Table>
 bool read(const std::string& path, const std::string& header, Table& table)
 {

@@ -514,7 +514,6 @@ JointOutputs Twin::Impl::outputs() const noexcept
   return outputs;
 }
 
-/// Updates sensors and health after a step.
 void Twin::Impl::observe() noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();
@@ -552,7 +551,6 @@ SolverState Twin::Impl::solverState(Stamp since) const noexcept
   return last_failed > after ? SolverState::FAILED : last_doubtful > after ? SolverState::DEGRADED : SolverState::OK;
 }
 
-/// Loads of the lobes at the current instant.
 LobeLoads Twin::Impl::lobes() const noexcept
 {
   const JointDynamics& dynamics = stepper.dynamics();

@@ -322,7 +322,6 @@ struct FaultScaleParameters
   double cage_deflection{};
 };
 
-/// All parameters of a twin.
 struct Parameters
 {
   JointParameters joint;

@@ -25,8 +25,6 @@ void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
   }
 }
 
-// Faults of the rim.
-
 /// Crack in the rim behind a tooth, with a depth of `severity` times fault_scale.rim_crack_depth of the thickness.
 void crackRim(int segment, double severity, const Parameters& parameters, RingModel& ring) noexcept
 {
@@ -78,8 +76,6 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   joint.ring.edit<CupTorsion>().scaleWall(1.0 - fault.severity * scale.buckling_stiffness_loss);
 }
 
-// Faults of the cup.
-
 /// Crack around the share x of the circumference. The remaining circumference carries the torque, so that the
 /// compliance of the cracked section of the wall is multiplied by 1/(1 - x). `share`: compliance of this section over
 /// that of the wall [-]. The faces of the crack rub on each other.
@@ -100,8 +96,6 @@ void crackFlange(const Fault& fault, const Parameters& parameters, JointModel& j
   crackCup(fault, parameters.fault_scale.flange_share, parameters, joint);
 }
 
-// Faults of the grease.
-
 void degradeLubricant(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double friction = 1.0 + fault.severity * (parameters.fault_scale.boundary_friction_factor - 1.0);
@@ -109,8 +103,6 @@ void degradeLubricant(const Fault& fault, const Parameters& parameters, JointMod
   joint.mesh_friction.scale(friction);
   joint.interface_friction.scale(friction);
 }
-
-// Faults of the teeth.
 
 /// Stiffness of a tooth pair over that of a sound pair [-]. `bending`: bending stiffness of the flexspline's tooth over
 /// that of a sound tooth; `share`: share of this bending in the compliance of a sound pair.

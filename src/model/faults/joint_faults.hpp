@@ -57,7 +57,6 @@ private:
   JointModel model_;
 };
 
-/// Faults that a joint with these parameters has at the start.
 inline FaultList faultsAtStart(const Parameters& parameters)
 {
   FaultList faults;
@@ -71,7 +70,6 @@ inline FaultList faultsAtStart(const Parameters& parameters)
   return faults;
 }
 
-/// Joint with the faults that it has at the start.
 inline JointModel startingJoint(const Parameters& parameters)
 {
   return JointFaults(parameters, faultsAtStart(parameters)).model();
