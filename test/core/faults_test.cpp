@@ -308,7 +308,7 @@ TEST(FaultDescriptions, GiveTheOrdersOfTheGearInQuestion)
   const Parameters other =
       shippedParameters({ "bearing.balls=15", "bearing.ball_diameter=7.0e-3", "bearing.pitch_diameter=50.0e-3" });
   EXPECT_EQ(shownFirst(FaultKind::BEARING_INNER_RACE, other), "order 8.55");
-  EXPECT_EQ(shownFirst(FaultKind::BEARING_OUTER_RACE, other), "order 6.45 and its sidebands at 2");
+  EXPECT_EQ(shownFirst(FaultKind::BEARING_OUTER_RACE, other), "order 6.45 with sidebands at a distance of 2");
 }
 
 TEST(RootCrack, GoesWhereTheBackupRatioSendsIt)
