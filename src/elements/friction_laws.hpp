@@ -17,7 +17,7 @@ namespace hjt
 /// Dry friction that opposes a slip. Its power is strength * |slip . (motor speed, output speed)| [W].
 struct FrictionTerm
 {
-  double strength;       ///< force or torque, >= 0 [N] or [N.m]
+  double strength;       ///< force or torque of the friction, >= 0 [N] or [N.m]
   Eigen::Vector2d slip;  ///< slip speed per motor and output speed [m/rad] or [-]
 };
 

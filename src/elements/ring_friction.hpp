@@ -165,7 +165,7 @@ public:
   {
   }
 
-  using Contact = WaveGeneratorContact::Scratch;  ///< result of the contact at the shape of a call
+  using Contact = WaveGeneratorContact::Scratch;  ///< result of WaveGeneratorContact::addForces for the shape
 
   /// Adds the damping of a ring in equilibrium, with respect to motor and output angle, to the viscous matrix.
   void add(const Contact& contact, const RingRates& rates, JointFriction& friction) const noexcept;

@@ -318,7 +318,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, 
     const double ny = normal[2 * i + 1];
     const double force = contact_force[i];
     const double stiffness = slope[i];
-    // rate of turn of the normal, and of the force with it, per motion of the tooth point along the surface [rad/m]
+    // turn of normal and force for a motion of the tooth point along the surface [rad/m]
     const double turn = curvature[i] / (1.0 - curvature[i] * (depth[i] + gap[i]));
     const double across = -force * turn;
     xx[i] += stiffness * nx * nx + across * ny * ny;

@@ -121,7 +121,7 @@ public:
   /// Whether the stiffness jumps where a tooth makes contact.
   bool hasKinks() const noexcept { return support_ == SupportKind::SPRINGS; }
 
-  /// Shortens the major semi-axis at lobe 0 by `lobe`, at lobe 1 by `other_lobe` [m]. The minor axis stays.
+  /// Shortens the major semi-axis at lobe 0 by `lobe`, at lobe 1 by `other_lobe` [m]. The minor axis does not change.
   void wear(double lobe, double other_lobe) noexcept;
 
 private:

@@ -60,7 +60,7 @@ struct JointModel
     return response;
   }
 
-  /// Quantities that the friction depends on besides the state of the ring.
+  /// Quantities that determine the friction together with the state of the ring.
   struct Running
   {
     Eigen::Vector2d speeds;  ///< speeds of motor and output [rad/s]

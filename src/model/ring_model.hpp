@@ -202,10 +202,10 @@ struct RingFrictionResponse
 
   double contact_force{};     ///< load of the wave generator's bearing: sum of the forces on all teeth [N]
   double ring_torque{};       ///< friction torque of outer race and flexing rim at the motor shaft [N.m]
-  Eigen::Vector3d viscous;    ///< damping of the dashpots: motor-motor, motor-output, output-output [N.m.s/rad]
-  Groups flank_by_motor;      ///< sum of force times slip per motor speed [N.m]
-  Groups flank_by_output;     ///< sum of force times slip per output speed [N.m]
-  Groups rms_slip_by_motor;   ///< root mean square slip per motor speed [m/rad]
-  Groups rms_slip_by_output;  ///< root mean square slip per output speed [m/rad]
+  Eigen::Vector3d viscous;    ///< viscous matrix: motor-motor, motor-output, output-output [N.m.s/rad]
+  Groups flank_by_motor;      ///< for each group the sum of force times slip per motor speed [N.m]
+  Groups flank_by_output;     ///< for each group the sum of force times slip per output speed [N.m]
+  Groups rms_slip_by_motor;   ///< for each group the root mean square slip per motor speed [m/rad]
+  Groups rms_slip_by_output;  ///< for each group the root mean square slip per output speed [m/rad]
 };
 }  // namespace hjt

@@ -130,7 +130,8 @@ public:
           mistyped(key + "kind", map_.at(key + "kind"), faultNames());
         }
       }
-      (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 }, "severity; for 1 see section fault_scale");
+      (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 },
+              "severity, 0 ... 1; section fault_scale says what 1 means");
       (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 },
               "tooth, segment, lobe or ball; -1: the whole member");
       (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "delay after the start");

@@ -302,17 +302,17 @@ void visitTelemetry(P& p, Visitor& visit)
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         ofOthers("part of the motor's inertia whose torque the recorded load torque already contains"));
   visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of two periods in a turn of the motor relative to "
-                 "the circular spline"));
-  visit(
-      "telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
-      ofOthers("kinematic error times stiffness: cosine and sine of two periods in a turn relative to the flexspline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of 2 cycles per turn of the motor relative to the "
+                 "circular spline"));
+  visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
+        ofOthers("kinematic error times stiffness: cosine and sine of 2 cycles per turn of the motor relative to the "
+                 "flexspline"));
   visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of four periods in a turn of the motor relative to "
-                 "the circular spline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of 4 cycles per turn of the motor relative to the "
+                 "circular spline"));
   visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
-        ofOthers(
-            "kinematic error times stiffness: cosine and sine of four periods in a turn relative to the flexspline"));
+        ofOthers("kinematic error times stiffness: cosine and sine of 4 cycles per turn of the motor relative to the "
+                 "flexspline"));
   visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
         ofOthers("resonance of the load on the joint's stiffness; far below this frequency the load follows the "
                  "kinematic error, far above it the load is at rest"));

@@ -26,7 +26,7 @@ constexpr int SCHUR = 4 * COUNT;  ///< number of unknowns of the separators
 /// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k, whose separator is the two teeth before its arc.
 struct Layout
 {
-  int steps;         ///< length of the longest arc
+  int steps;         ///< length of the longest arc [teeth]
   int first[COUNT];  ///< tooth of each lane at step 0
   /// whether the arc of a lane is shorter and has no tooth at step 0; first[k] is then the last tooth of its separator
   bool idle[COUNT];

@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-// motor speed over the motor speed of the regularisation, below which the motor may be exactly at rest [-]
+// motor speed over solver.stiction_velocity, below which the motor can be exactly at rest [-]
 constexpr double STICK_RANGE = 1e3;
 constexpr double SLIDING = 3e4;  // slip over the width of the regularisation, above which a term is far from rest [-]
 // slip over the width of the regularisation, above which a term slides: it has its full friction to 6e-4 [-]

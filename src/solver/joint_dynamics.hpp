@@ -22,7 +22,7 @@ constexpr int OUTPUT_ANGLE = 1;  ///< [rad]
 constexpr int MOTOR_SPEED = 2;   ///< [rad/s]
 constexpr int OUTPUT_SPEED = 3;  ///< [rad/s]
 constexpr int MOTOR_WORK = 4;    ///< work of the motor's torque [J]
-constexpr int LOAD_WORK = 5;     ///< work on the external load torque [J]
+constexpr int LOAD_WORK = 5;     ///< work done on the external load [J]
 constexpr int DISSIPATED = 6;    ///< energy that all friction has dissipated [J]
 constexpr int DRIVE_TORQUE = 7;  ///< torque of the motor's current at 25 degC [N.m]
 }  // namespace joint_state

@@ -227,7 +227,7 @@ private:
     const Line& line = found[middle] = measure(ring, middle);
     if (line.empty())
     {
-      fail("the ring has no equilibrium between two angles at which it has one");
+      fail("the ring has no equilibrium between two angles at which it has equilibria");
       return;
     }
     const double miss = LineCheck(ring.ring(), columns_).miss(below.v, below.line, above.v, above.line, middle, line);

@@ -67,7 +67,7 @@ public:
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< tooth pitch [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal ratio [-]
-  /// Torque limit of load or motor at the output, whichever is larger [N.m]. The motor's limit counts with at most
+  /// Torque limit of load or motor at the output, whichever is larger [N.m]. The motor's limit is at most
   /// COLLISION_MARGIN times the momentary peak torque.
   double torqueLimit() const noexcept { return torque_limit_; }
   const JointModel& model() const noexcept { return model_; }
@@ -93,7 +93,7 @@ public:
   /// Friction torque of ring and bearing at the motor of a slow drive, with static friction of the flanks [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
 
-  /// Friction torque of the flanks at the motor over the coefficient of friction [N.m].
+  /// Friction torque of the flanks at the motor, divided by the coefficient of friction [N.m].
   static double flankFriction(const SurfaceNode& node) noexcept;
 
   /// Number of tooth pitches after which the gear repeats at constant v, by torques at loads of both signs, sampled

@@ -13,8 +13,8 @@ enum class SolveCode
   NO_DESCENT,       ///< no step reduced the out-of-balance forces, even after the last allowed halving of the path
   SINGULAR,         ///< the tangent matrix has no inverse
   NOT_FINITE,       ///< a value became NaN or infinite
-  UNBALANCED,       ///< no output angle within reach balances the load
-  DISENGAGED        ///< no tooth touches at any output angle within reach
+  UNBALANCED,       ///< no output angle that the search reaches balances the load
+  DISENGAGED        ///< no tooth touches a flank at any output angle that the search reaches
 };
 
 /// Task of the solver.

@@ -20,7 +20,8 @@ struct FaultCounters
   std::uint64_t no_room{};   ///< faults that the twin refused because too many faults wait or are active
 };
 
-/// Faults that will set in or end, ordered by time. Equal stamps stay in order of arrival. The size is fixed.
+/// Faults that wait, in the order of their stamps and, for equal stamps, of their arrival. The storage has a fixed
+/// size.
 class FaultSchedule
 {
 public:
