@@ -350,8 +350,7 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
                                       double step, JointFriction& sticking) const noexcept
 {
   constexpr int MAX_PARTS = 16;  // parts of a step; teeth stop one after the other, up to ten in a step
-  // change of the speeds in the step without friction [rad/s]
-  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;
+  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // change without friction [rad/s]
   KickedSpeeds speeds{ old_speeds, old_speeds };
   double rest = 1.0;  // remaining share of the step [-]
   const auto go_on = [&](double share, const Eigen::Vector2d& to)

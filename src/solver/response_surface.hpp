@@ -201,7 +201,7 @@ public:
 
   static constexpr std::size_t MAX_SHARES = 4;
 
-  /// Share of another surface in an interpolated one.
+  /// Share of another surface in an interpolated surface.
   struct Share
   {
     std::shared_ptr<const ResponseSurface> surface;  ///< surface without shares and balls

@@ -390,7 +390,7 @@ private:
     }
   }
 
-  /// Measures the coarse lines, which are denser near no load. If there is a mirror, measures only those of v >= 0.
+  /// Measures the coarse lines, which are denser near no load. With mirror symmetry, measures only lines of v >= 0.
   void coverRange(double lowest, double highest)
   {
     for (int i = mirror_ ? 0 : -COARSE_LINES; i <= COARSE_LINES; ++i)

@@ -148,7 +148,7 @@ std::string body(const BallTable& table)
   return bytes;
 }
 
-/// Reader of the numbers of a table's file. `complete` tells at the end whether all numbers were there and valid.
+/// Reader of the numbers in a table's file. After the last number, `complete` is true if all numbers were valid.
 class BodyReader
 {
 public:

@@ -100,7 +100,7 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Value of a parameter for a file if there is no file.
+/// Value of a parameter that can name a file, for no file.
 constexpr const char* NO_FILE = "none";
 
 /// Pitch errors of the flexspline or the circular spline, from a random sequence with a seed or from a table.
