@@ -28,7 +28,7 @@ class CupTorsion
 public:
   CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. The other compliance, T1 and T2 do not change.
+  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. T1, T2 and the remaining compliance stay.
   void scaleWall(double factor) noexcept;
 
   /// mean rotation Phi of the tooth points from rest [rad]

@@ -112,7 +112,7 @@ struct JointFriction
   }
 
   FrictionTerms terms;
-  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle, so that it is no term [N.m]
+  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle, not among `terms` [N.m]
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque per speed, positive semi-definite [N.m.s/rad]
   /// derivatives of x and y of each tooth point by the motor angle while the output turns at the velocity ratio [m/rad]
   Eigen::VectorXd running;
@@ -123,10 +123,10 @@ struct JointFriction
   Eigen::VectorXd flank_load;  ///< normal force of each term of a flank [N]
 };
 
-/// Mobilised share of a dry friction above which a body counts as sliding [-].
+/// Share of its full torque above which a dry friction counts as sliding [-].
 constexpr double SLIDING_SHARE = 0.95;
 
-/// Mobilised share s of a dry friction after a further turn, -1 ... 1 [-]. This is the exact solution of Dahl's model:
+/// Share s of its full torque that a dry friction has after a further turn, -1 ... 1 [-], exactly by Dahl's model:
 ///
 ///   ds/dx = (1 - s sgn(dx)) / angle
 /// `share`: s before the turn; `turn`: further turn dx [rad]; `angle`: turn over which friction builds up, > 0 [rad].

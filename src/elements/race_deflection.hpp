@@ -69,7 +69,7 @@ public:
   double deepest() const noexcept;
   /// Whether at most one ball drops at a time, because there is one fault and it is shorter than a ball pitch.
   bool dropsOneBall() const noexcept;
-  /// If dropsOneBall or the bearing is sound: the only ball that can drop at the wave generator's angle [rad].
+  /// The only ball that can drop at a wave generator angle [rad], if dropsOneBall() or if the bearing is sound.
   int ballThatMayDrop(double wave_generator_angle) const noexcept;
 
   int balls() const noexcept { return balls_; }

@@ -57,7 +57,7 @@ public:
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Computes the strengths of the terms that `addTerms` added for other speeds. `first`: index of the first of them.
+  /// Computes the strengths of the terms of `addTerms` at other speeds. `first`: index of the first of these terms.
   void setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
   /// Friction coefficient by the Stribeck curve at a sliding speed along the flank [m/s] [-].

@@ -32,7 +32,7 @@ struct ForceSum
   /// Extends the sum over the first half of the ring to the whole ring.
   void repeat() noexcept
   {
-    // Adds the forces of this half on the neighbouring teeth of the other half at their copies in this half.
+    // Two teeth of the other half have forces from this half, which are added at their copies in this half.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();
@@ -169,9 +169,9 @@ struct RingTangent
   /// the half are then coupled to its first teeth, which represent the teeth half a turn away with opposite sign.
   void closeHalf() noexcept;
 
-  SymmetricBlocks diagonal;       ///< blocks at (i, i)
-  ToothBlocks next;               ///< blocks at (i, i+1), cyclic
-  ToothBlocks second;             ///< blocks at (i, i+2), cyclic
+  SymmetricBlocks diagonal;       ///< block of each tooth i with itself
+  ToothBlocks next;               ///< block of each tooth i with tooth i+1, cyclic
+  ToothBlocks second;             ///< block of each tooth i with tooth i+2, cyclic
   Eigen::VectorXd cup_direction;  ///< gradient of the mean rotation by x and y of each tooth point [rad/m]
   double cup_stiffness{};         ///< stiffness of the cup for its mean rotation [N.m/rad]
   /// mixed derivative of the energy by x and y of each tooth point and the wave generator angle [N/rad]

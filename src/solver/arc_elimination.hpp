@@ -35,9 +35,9 @@ struct Layout
 /// Entries of the ring's tangent (RingTangent), with one array for each entry of a block.
 struct Tangent
 {
-  const double* diagonal[3];  ///< xx, xy, yy
-  const double* next[4];      ///< xx, xy, yx, yy
-  const double* second[4];    ///< xx, xy, yx, yy
+  const double* diagonal[3];  ///< block of each tooth with itself: xx, xy, yy
+  const double* next[4];      ///< block of each tooth with the next tooth: xx, xy, yx, yy
+  const double* second[4];    ///< block of each tooth with the second next tooth: xx, xy, yx, yy
   const double* cup;          ///< couplings to the cup: x and y of each tooth
 };
 
@@ -80,7 +80,7 @@ struct Kernels
   void (*solve_schur)(const SchurFactors& factors, double* b);
 };
 
-extern const Kernels BASELINE;  ///< for every processor of the architecture
+extern const Kernels BASELINE;  ///< kernels for every processor of the architecture
 #ifdef HJT_AVX2
 extern const Kernels AVX2;    ///< x86-64 with AVX2
 extern const Kernels AVX512;  ///< x86-64 with AVX-512 VL and DQ: vectors as long as in AVX2, twice as many registers

@@ -304,7 +304,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
     const Eigen::Vector2d response = answer(term.slip);
     v += strongest * sliding.leaveOut(nearest) * response;    // speeds without the friction of this term
     const double most = strongest * term.slip.dot(response);  // slip that the friction of this term can remove
-    double share = 0.0;                                       // mobilised share of the strength of this term
+    double share = 0.0;                                       // share of its strength that this term has
     if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;

@@ -105,7 +105,7 @@ public:
   /// Computes `friction()` for the present angles. `speeds`: speeds of motor and output [rad/s].
   void updateFriction(const Eigen::Vector2d& speeds) noexcept;
 
-  /// Calls DryFriction::stopOrSlide with the present friction. On failure `status` says so.
+  /// Calls DryFriction::stopOrSlide with the present friction. On failure the speeds are 0.
   KickedSpeeds stopOrSlide(const DryFriction& friction, const Eigen::Vector2d& before, const Eigen::Vector2d& momentum,
                            double dt) noexcept;
 
@@ -153,7 +153,7 @@ private:
   struct Memory
   {
     CupFriction::State cup;
-    double share{};        // mobilised share of the friction at the motor shaft, -1 ... 1
+    double share{};        // share of its full torque that the friction at the motor shaft has, -1 ... 1
     double motor_angle{};  // [rad]
     Brake::Pin pin;
   };

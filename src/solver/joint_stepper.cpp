@@ -329,7 +329,7 @@ void JointStepper::setOutputInertia(double inertia) noexcept
   dynamics_.setOutputInertia(inertia);
 }
 
-/// Increases the number of substeps if their phase exceeds `phase_limit_`. Reduces it if fewer meet AIM.
+/// Increases the number of substeps if their phase exceeds `phase_limit_`. Reduces it if fewer ones meet AIM.
 void JointStepper::divideAgain(double output_inertia) noexcept
 {
   const double phase = frequency(output_inertia) * step_;

@@ -161,7 +161,7 @@ public:
     return (1.0 - v_) * low + v_ * high;
   }
 
-  /// The first COUNT bilinear values.
+  /// First COUNT of the values that are interpolated bilinearly.
   template <int COUNT>
   inline __attribute__((always_inline)) Eigen::Array<float, COUNT, 1> values() const noexcept
   {
@@ -216,7 +216,7 @@ public:
   struct Cells
   {
     SurfaceCell cell;
-    SurfaceCell deviation;  ///< empty: no deviation at this position
+    SurfaceCell deviation;  ///< cell of the deviations; empty: no deviation at this position
     bool lobes_swapped{};   ///< whether the lobes have exchanged their places since the deviations were solved
     double weight{ 1.0 };   ///< weight of these values in the sum of the shares
 
@@ -288,7 +288,7 @@ public:
     return shares_.empty() && !balls_ && tables_->deviations.pitches.empty() && !tables_->table.teeth.lines.empty();
   }
   const std::optional<BallDrops>& balls() const noexcept { return balls_; }
-  const std::vector<Share>& shares() const noexcept { return shares_; }  ///< empty: the surface has tables of its own
+  const std::vector<Share>& shares() const noexcept { return shares_; }  ///< empty: the surface has its own tables
   double lowest() const noexcept { return lowest_; }                     ///< least v [rad]
   double highest() const noexcept { return highest_; }                   ///< largest v [rad]
 

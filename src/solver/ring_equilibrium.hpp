@@ -44,14 +44,14 @@ public:
   /// Solves for the equilibrium at another position from the present one.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// Solves at another position from a guess of the tooth points [m]. The model must be unchanged since then.
+  /// Solves at another position of an unchanged model from a guess of the tooth points [m].
   SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
 
   /// Minimises the energy at the target, for a ring that snaps so that `moveTo` failed. Teeth that leave their space
   /// get the nearest space. This is slow. On failure the state does not change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
-  /// Calls `moveTo`, after its failure `descend`, and after the failure of `descend` `reinsert`.
+  /// Calls `moveTo`. If this fails, calls `descend`. If this fails too, calls `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
   /// Solves like `reach`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and

@@ -276,7 +276,7 @@ bool SurfaceRing::isMirrored()
     {
       for (int i = 0; i < PLACES && mirrored; ++i)
       {
-        // 0.3 avoids the middle and the beginning of a pitch, which are their own mirror images at no load.
+        // The 0.3 avoids middle and start of a pitch, which are their own mirror images at no load.
         const double angle = pitch_ * (i + 0.3) / PLACES;
         mirrored = moveTo(direction * angle, direction * twist(load * torque_limit_));
         const Node node = mirrored ? measure() : Node{};

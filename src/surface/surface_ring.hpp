@@ -97,8 +97,8 @@ public:
   static double flankFriction(const SurfaceNode& node) noexcept;
 
   /// Number of tooth pitches after which the gear repeats at constant v, by torques at loads of both signs, sampled
-  /// once in each pitch. It is 1 for equal teeth, and that of half a turn or a turn of the wave generator (with a pitch
-  /// or two more for the circular spline) if the teeth of one part differ; 0: the gear has none of these periods.
+  /// once in each pitch. It is 1 for equal teeth. If the teeth of the flexspline differ, it is that of half a turn or a
+  /// turn of the wave generator, and for the circular spline one or two more. 0: none of these.
   int repetition();
 
   /// Whether the gear has mirror symmetry, by samples at three loads: at opposite angles the friction is equal and the

@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// Option or argument of a function, with the rules for its values and the given values. Each member adds a rule.
+/// Option or argument of a function, with the rules for its values and the given values. Each function adds a rule.
 struct Option
 {
   enum class Kind

@@ -40,7 +40,7 @@ constexpr int WHOLE_MEMBER = -1;
 /// Largest number of faults that can be active or configured at once.
 constexpr std::size_t MAX_FAULTS = 256;
 
-/// Fault of the gear. A second fault of this kind and place replaces the severity of the first.
+/// Fault of the gear. A second fault of equal kind and place replaces the severity of the first fault.
 struct Fault
 {
   FaultKind kind{};

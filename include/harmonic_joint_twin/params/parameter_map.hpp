@@ -63,7 +63,8 @@ std::uint64_t parametersHash(const Parameters& parameters);
 /// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
-/// Reads a text of describeParameters into `map`. Its faults replace those of `map`. @throws ParameterError
+/// Reads a text of describeParameters into `map`. Its faults replace those of `map`. @throws ParameterError that names
+/// `source` and line.
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
 /// Table of docs/parameters.csv in Markdown, with key, type, unit, range and meaning of each parameter.

@@ -292,7 +292,7 @@ struct JointParameters
   std::string hardware_id{};
 };
 
-/// Size of a fault at severity 1, by kind of fault.
+/// Sizes of the faults at severity 1, by kind of fault.
 struct FaultScaleParameters
 {
   double interface_wear_depth{};

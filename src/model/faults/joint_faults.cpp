@@ -172,8 +172,6 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
   mesh.tipLoss().array() += fault.severity * parameters.fault_scale.ratcheting_tip_loss;
 }
 
-// Faults of the wave generator and its bearing.
-
 /// The lobes wear because they carry the largest force. The smaller mean radius loosens the bearing's races.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
