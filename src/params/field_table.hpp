@@ -194,7 +194,7 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.baseline_classes", "-", p.indicators.baseline_classes, Range{ 1, 1000 },
         ofOthers("largest number of classes of operating points with a reference; each needs 0.2 MB of memory"));
   visit("indicators.least_spread", "-", p.indicators.least_spread, Range{ 0.0, 1.0 },
-        ofOthers("relative repeatability of a sound drive's indicators from one recording to the next"));
+        ofOthers("relative spread of a sound drive's indicators from one recording to the next"));
   visit("indicators.false_alarm_rate", "-", p.indicators.false_alarm_rate, Range{ 1e-12, 0.5 },
         ofOthers("probability that the mean of sound windows has an indicator or pattern beyond its threshold"));
   visit("indicators.evidence_windows", "-", p.indicators.evidence_windows, Range{ 1, 100 },
@@ -357,7 +357,8 @@ void visitComparison(P& p, Visitor& visit)
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
         ofOthers("largest relative difference of a sound joint's torsion from that of the twin"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
-        ofOthers("relative repeatability of torsion, and relative agreement of friction between the joints of an arm"));
+        ofOthers(
+            "largest relative change of a sound joint's torsion between recordings, and of friction between joints"));
 }
 
 template <class P, class Visitor>

@@ -66,7 +66,7 @@ void visitManufacture(P& p, Visitor& visit)
   const Range pitch_deviation{ 0.0, 1e-4 };
   const Range seed{ 0, 99999 };
   visit("manufacture.flexspline_pitch_deviation", "m", p.manufacture.flexspline_pitch.deviation, pitch_deviation,
-        "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height");
+        "total cumulative pitch deviation Fp of the flexspline's teeth at mid-height (ISO 1328-1)");
   visit("manufacture.flexspline_pitch_seed", "-", p.manufacture.flexspline_pitch.seed, seed,
         "seed of the pitch deviations: each seed stands for one gear");
   visit("manufacture.flexspline_pitch_table", p.manufacture.flexspline_pitch.table,
