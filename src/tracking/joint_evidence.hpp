@@ -57,6 +57,9 @@ public:
   /// ratio - joint angle, with any zero [rad]. `position`, `speed`: those of the joint [rad], [rad/s].
   void add(double torque, double twin, double torsion, double position, double speed) noexcept
   {
+    // Any zero is large beside the torsion, and the ridge of the fit would add a part of it to the compliance.
+    zero_ = rows() == 0 ? torsion : zero_;
+    torsion -= zero_;
     Eigen::Matrix<double, SINE + 1, 1> row;
     row << 1.0, std::copysign(1.0, speed), twin, std::cos(position), std::sin(position);
     regression_.add(row, Eigen::Matrix<double, 1, 1>(torsion));
@@ -129,7 +132,8 @@ private:
     return regression_.mean(column, other) - regression_.mean(column, 0) * regression_.mean(other, 0);
   }
 
-  double step_;  // width of a step of the torque [N.m]
+  double step_;    // width of a step of the torque [N.m]
+  double zero_{};  // torsion of the first row [rad]
   RunningRegression regression_;
   std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by direction of turning, from the least torque on
 };

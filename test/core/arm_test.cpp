@@ -406,17 +406,17 @@ std::vector<ArmSetPoint> elbowAlong(int rows, const Angle& x)
 
 TEST(SetPoints, MissingRatesAreDifferencesAndAJointRestsAtTheEndsIfItCan)
 {
-  const auto slow = [](double t) { return 0.3 + 0.05 * t + 4.0 * t * t; };
+  const auto slow = [](double t) { return 0.3 + 0.04 * t + 4.0 * t * t; };
   std::vector<ArmSetPoint> points = elbowAlong(5, slow);
   fillRates(points, false, false);
   for (std::size_t k : { 1U, 2U, 3U })
   {
-    EXPECT_NEAR(points[k].joints[2].velocity, 0.05 + 8.0 * points[k].time, 1e-12) << k;
+    EXPECT_NEAR(points[k].joints[2].velocity, 0.04 + 8.0 * points[k].time, 1e-12) << k;
   }
-  EXPECT_EQ(points[0].joints[2].velocity, 0.0);  // from 0.08 rad/s within 8 ms: 10.2 rad/s^2 would be too much
-  EXPECT_NEAR(points[4].joints[2].velocity, 0.05 + 8.0 * 0.028, 1e-12);
+  EXPECT_EQ(points[0].joints[2].velocity, 0.0);  // 0.072 rad/s after 8 ms is 9 rad/s^2
+  EXPECT_NEAR(points[4].joints[2].velocity, 0.04 + 8.0 * 0.028, 1e-12);
   EXPECT_NEAR(points[2].joints[2].acceleration, 8.0, 1e-9);
-  EXPECT_NEAR(points[0].joints[2].acceleration, (0.05 + 8.0 * 0.008) / 0.008, 1e-9);
+  EXPECT_NEAR(points[0].joints[2].acceleration, (0.04 + 8.0 * 0.008) / 0.008, 1e-9);
   EXPECT_EQ(points[2].joints[1].velocity, 0.0);
 
   points = elbowAlong(5, slow);
@@ -474,8 +474,9 @@ TEST(SetPoints, SpeedsOfAnotherUnitOrSignAreRefused)
   {
     EXPECT_EQ(complaint(sound, 0.3), "");
   }
-  EXPECT_EQ(complaint(57.3, 0.3), "FILE: elbow: its speeds are 57.3 times the rate of its angles, allowed: 0.5 ... 2 "
-                                  "(are they degrees/s?)");
+  EXPECT_EQ(complaint(57.3, 0.3),
+            "FILE: elbow: its speeds are 57.3 times the rate of its angles, allowed: 0.5 ... 2 "
+            "(are they degrees/s?)");
   EXPECT_THAT(complaint(-1.0, 0.3), testing::HasSubstr("is their sign wrong?"));
   EXPECT_THAT(complaint(0.4, 0.3), testing::HasSubstr("are they missing?"));
   EXPECT_EQ(complaint(57.3, 0.09), "");  // too little motion to tell

@@ -7,7 +7,7 @@
 
 namespace hjt
 {
-/// What the ParameterError says that `call` ends in; empty if it ends in none.
+/// Message of the InputError or ParameterError that `call` throws; empty: it throws none.
 template <class Call>
 std::string complaintOf(const Call& call)
 {
@@ -15,7 +15,7 @@ std::string complaintOf(const Call& call)
   {
     call();
   }
-  catch (const ParameterError& error)
+  catch (const InputError& error)
   {
     return error.what();
   }

@@ -196,6 +196,66 @@ TEST(Faults, OfTheCupSoftenItsWallAlone)
   }
 }
 
+/// What a fault of severity 1/2 makes of its tooth, by the laws of docs/faults.md.
+TEST(Faults, ChangeAToothByTheirLaws)
+{
+  constexpr int TOOTH = 7;
+  const Parameters parameters = shippedParameters();
+  const FaultScaleParameters& scale = parameters.fault_scale;
+  const GearParameters& gear = parameters.gear;
+  // Of the compliance of a sound pair the tooth's bending is a share; the rest stays.
+  const auto pair = [&](double bending)
+  { return 1.0 / (1.0 - scale.tooth_compliance_share + scale.tooth_compliance_share / bending); };
+  const double worn = 0.5 * scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
+  const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
+  struct Row
+  {
+    FaultKind kind;
+    double stiffness;  // over that of a sound pair [-]
+    double clearance;  // added [m]
+    double friction;   // of the flanks, over that of sound flanks [-]
+    double tip_loss;   // [m]
+  };
+  for (const Row& row : { Row{ FaultKind::TOOTH_ROOT_CRACK, pair(std::pow(0.5, 3)), 0.0, 1.0, 0.0 },
+                          Row{ FaultKind::TOOTH_TIP_CRACK, pair(1.0 / (1.0 + 3.0 * std::pow(0.5, 3))), 0.0, 1.0, 0.0 },
+                          Row{ FaultKind::TOOTH_WEAR, pair(std::pow(1.0 - 2.0 * worn / thickness, 3)), worn, 1.0, 0.0 },
+                          Row{ FaultKind::PITTING, 1.0 - 0.5 * scale.pitted_fraction, 0.0,
+                               0.5 * (1.0 + scale.pitted_friction_factor), 0.0 },
+                          Row{ FaultKind::RATCHETING, 1.0, 0.0, 1.0, 0.5 * scale.ratcheting_tip_loss } })
+  {
+    SCOPED_TRACE(describe(row.kind).name);
+    const bool is_whole = row.kind == FaultKind::RATCHETING;
+    const JointFaults faults(parameters, listOf({ { row.kind, 0.5, is_whole ? WHOLE_MEMBER : TOOTH, 0.0 } }));
+    JointModel joint = faults.model();
+    JointModel sound(parameters);
+    ToothMesh& mesh = joint.ring.edit<ToothMesh>();
+    ToothMesh& sound_mesh = sound.ring.edit<ToothMesh>();
+    EXPECT_NEAR(mesh.stiffness()[TOOTH] / sound_mesh.stiffness()[TOOTH], row.stiffness, 1e-12);
+    EXPECT_NEAR(mesh.clearance()[TOOTH] - sound_mesh.clearance()[TOOTH], row.clearance, 1e-15);
+    EXPECT_NEAR(mesh.tipLoss()[TOOTH] - sound_mesh.tipLoss()[TOOTH], row.tip_loss, 1e-15);
+    EXPECT_NEAR(joint.mesh_friction.toothFactor()[TOOTH] / sound.mesh_friction.toothFactor()[TOOTH], row.friction,
+                1e-12);
+    if (!is_whole)
+    {
+      EXPECT_EQ(mesh.stiffness()[TOOTH + 1], sound_mesh.stiffness()[TOOTH + 1]);
+      EXPECT_EQ(mesh.clearance()[TOOTH + 1], sound_mesh.clearance()[TOOTH + 1]);
+    }
+  }
+}
+
+TEST(Faults, OfTheLubricantChangeEveryFrictionByTheirLaw)
+{
+  const Parameters parameters = shippedParameters({ "bearing.constant_share=0.0" });
+  const FaultScaleParameters& scale = parameters.fault_scale;
+  const JointFaults faults(parameters, listOf({ { FaultKind::LUBRICANT_DEGRADATION, 0.5, WHOLE_MEMBER, 0.0 } }));
+  const JointModel sound(parameters);
+  const JointModel& joint = faults.model();
+  EXPECT_NEAR(joint.mesh_friction.coefficient(1e-3) / sound.mesh_friction.coefficient(1e-3),
+              0.5 * (1.0 + scale.boundary_friction_factor), 1e-12);
+  EXPECT_NEAR(joint.bearing.viscosity(20.0) / sound.bearing.viscosity(20.0), 0.5 * (1.0 + scale.viscosity_factor),
+              1e-9);
+}
+
 TEST(Faults, ComposeInAnyOrderAndSetInLiveAsConfigured)
 {
   std::vector<Fault> faults;

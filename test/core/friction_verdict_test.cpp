@@ -74,6 +74,7 @@ public:
   {
     SeededRandom engine(5);
     evidence_.reset();
+    torsion_.reset();
     for (int i = 0; i * PERIOD < seconds; ++i)
     {
       MotionSample sample = motion(i * PERIOD);
@@ -83,7 +84,7 @@ public:
       const double worn = (factor(sample.time) - 1.0) * predicted.friction_torque / gain();
       sample.current = predicted.current + worn + more + 0.05 * engine.normal();
       sample.target_current = predicted.current + (expected_ - 1.0) * predicted.friction_torque / gain();
-      sample.motor_angle = evidence_.ratio() * (sample.position + compliance_ * torsion_.to(sample.load) + 0.01);
+      sample.motor_angle = evidence_.ratio() * (sample.position + compliance_ * torsion_.to(sample.load) + 1.0);
       evidence_.update(sample);
     }
     return evidence_;
@@ -310,7 +311,7 @@ TEST_F(FrictionVerdict, TorsionIsJudgedBesideTheTwinOrBesideTheDrivesOwn)
       const Finding finding = torsion(sound * (1.0 + deviation), own);
       EXPECT_EQ(finding.level, level);
       EXPECT_EQ(finding.reason, level == VerdictLevel::OK ? Reason::SOUND : Reason::TORSION);
-      EXPECT_NEAR(verdict[Figure::TORSION_OF_TWIN], sound * (1.0 + deviation), 1e-3);
+      EXPECT_NEAR(verdict[Figure::TORSION_OF_TWIN], sound * (1.0 + deviation), 1e-5);
       EXPECT_NEAR(verdict[Figure::TORSION_TOLERANCE], tolerance, 1e-12);
     }
   }
@@ -358,6 +359,7 @@ TEST_F(FrictionVerdict, MotionThatShowsNoFrictionIsNotJudged)
   EXPECT_EQ(gap(forward, 60.0, 2.0), Reason::ONE_DIRECTION);
   EXPECT_EQ(gap(between(0.5), 60.0, 2.0), Reason::ONE_SPEED);
   EXPECT_EQ(gap(swing, 3.9, 2.0), Reason::TOO_SHORT);
+  EXPECT_THAT(frictionFactor(joint_.evidence(swing, 3.9, 2.0), {}).why_not, HasSubstr("for less than 6 s"));
   EXPECT_EQ(gap(swing, 60.0, 1.0), Reason::SOUND);
   const auto hidden = [&](const Motion& motion) { return judge(joint_.evidence(motion, 60.0, 1.0), {}).cannot_show; };
   EXPECT_THAT(hidden(forward), Contains(HasSubstr("one way only")));

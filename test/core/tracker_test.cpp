@@ -452,7 +452,7 @@ TEST(VerdictWatch, JudgesNothingWhileSomethingTouchesTheArmOrDoesNotFit)
   const Verdict& touched = each_second[22];
   EXPECT_EQ(touched.level, VerdictLevel::NOT_JUDGED);
   EXPECT_EQ(touched.reason, Reason::CONTACT);
-  EXPECT_NEAR(touched[Figure::CONTACT_SINCE], 20.3, 0.2);
+  EXPECT_NEAR(touched[Figure::CONTACT_SINCE], 20.0, 0.1);
   EXPECT_NEAR(touched[Figure::LARGEST_CONTACT_TORQUE], 3.0 * parameters.telemetry.torque_per_current, 5.0);
   EXPECT_FALSE(std::isfinite(touched.friction.factor));
   EXPECT_THAT(verdictText(touched), HasSubstr("touched the arm"));
