@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// Largest difference between a stamp and the time of recording [s]. If it is larger, two clocks disagree.
+/// Largest difference between a stamp and the time of recording [s]. A larger one shows that two clocks disagree.
 constexpr double MAX_DELAY = 10.0;
 
 /// Converts the messages of a bag to inputs.

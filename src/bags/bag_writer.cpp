@@ -133,7 +133,7 @@ BagWriter::~BagWriter()
   }
 }
 
-/// First step of writing a message. @returns the time of recording.
+/// Converts a message's stamp to its time of recording. @throws InputError if the bag is closed or the stamp is zero.
 ros::Time BagWriter::begin(Stamp stamp)
 {
   if (!file_)
@@ -159,7 +159,7 @@ void BagWriter::copy(const rosbag::MessageInstance& message)
   auto known = copied_headers_.find(header);
   if (known == copied_headers_.end())
   {
-    // The headers of two connections may be equal except for the topic.
+    // The headers of two connections may be equal, so the key also contains the topic.
     ros::M_string key = *header;
     key["topic"] = message.getTopic();
     auto same = copied_.find(key);

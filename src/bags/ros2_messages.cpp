@@ -48,7 +48,7 @@ bool isChosen(const Ros2Channel& channel, const std::vector<std::string>& topics
   return is_named || (with_temperatures && channel.type == TEMPERATURE_TYPE);
 }
 
-/// Decodes a message of a chosen channel and gives it to the visitor. @returns false if the visitor wants no more.
+/// Decodes the messages of chosen channels and gives them to the visitor. `take` returns false if the visitor stops.
 class Ros2Message
 {
 public:
@@ -273,11 +273,11 @@ enum Opcode : std::uint8_t
   DATA_END = 0x0F
 };
 
-constexpr std::size_t MAGIC = 8;                    // length of the first bytes that mark an MCAP file [byte]
+constexpr std::size_t MAGIC = 8;                    // length of the mark at the begin and end of an MCAP file [byte]
 constexpr std::size_t RECORD_HEAD = 9;              // length of opcode and length of a record [byte]
 constexpr std::uint64_t MAX_MCAP_CHUNK = 1U << 30;  // largest size of an unpacked chunk [byte]
 constexpr std::uint64_t SMALL_CHUNK = 1U << 26;     // unpacked chunks of this size are always accepted [byte]
-constexpr std::uint64_t MOST_PACKED = 100;          // largest unpacked size of other chunks over the file's size [-]
+constexpr std::uint64_t MOST_PACKED = 100;          // largest unpacked size of larger chunks over the file's size [-]
 
 struct McapDamage
 {

@@ -43,7 +43,7 @@ private:
 /// as a double. Then one rounding gives the nearest double (Clinger 1990), as in the C library.
 struct Decimal
 {
-  static constexpr int FAR = 100000;  // stands for any larger exponent
+  static constexpr int FAR = 100000;  // exponent that stands for any larger exponent
   static constexpr std::array<double, 23> POWERS{ 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                                   1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
                                                   1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22 };

@@ -11,7 +11,7 @@ namespace hjt
 {
 // Quantiles of a normal distribution, in units of its standard deviation.
 constexpr double NORMAL_95 = 1.96;        ///< half width of the interval with 95 % of the values
-constexpr double NORMAL_MEDIAN = 0.6745;  ///< median of the magnitudes
+constexpr double NORMAL_MEDIAN = 0.6745;  ///< median of the magnitudes of the values
 
 /// Median of one or more values, the upper of the middle two if their number is even. Reorders them; no allocation.
 template <typename Iterator>

@@ -54,7 +54,7 @@ public:
   ArmSpec read(const PlanNode& duty, const PlanValues& values, const ParameterMap& settings,
                const std::vector<RunFault>* faults, const std::string& faults_origin) const;
 
-  /// Arm and configuration of its drives, on which the runs depend besides the plan.
+  /// Arm and configuration of its drives. The runs depend on both and on the plan.
   OrderedJson configuration() const;
   OrderedJson motions() const;  ///< hash of each motion, by the name of its file
 

@@ -185,9 +185,9 @@ bool writeFaults(hid_t file, const std::vector<RunFault>& faults, const std::opt
          (rows.empty() || H5Dwrite(dataset.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0);
 }
 
-/// A run as an HDF5 file, in the format of docs/datasets.md: a group for each rate with a data set for each column, for
-/// time and severity; the indicators of each window; faults, parameters and record. Equal runs give equal bytes,
-/// because the file has no time stamps.
+/// A run as an HDF5 file, in the format of docs/datasets.md. The file has a group for each rate, with a data set for
+/// each column, for time and for severity. It also has the indicators of each window, faults, parameters and record.
+/// Equal runs give equal bytes, because the file has no time stamps.
 class Hdf5RunFile : public RunFile
 {
 public:
@@ -573,7 +573,7 @@ Columns columnsOf(hid_t group, const std::string& place)
     const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
     if (H5Sget_simple_extent_ndims(space.get()) != 1)
     {
-      continue;  // a row has one number for each tooth
+      continue;  // in this column, a row has one number for each tooth
     }
     std::vector<double> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
     if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)

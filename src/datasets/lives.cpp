@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // limit for all drives of a plan together
+constexpr std::size_t MAX_CHECK_UPS = 1'000'000;  // largest number of check-ups of all drives of a plan together
 // Number of positions of the wave generator within a tooth pitch at which the loads of a turn are computed.
 constexpr int POSITIONS = 8;
 /// Parts of the bearing where its first spall can occur.

@@ -28,7 +28,7 @@ struct RunSpec
   std::string duty_name;
   std::uint64_t repeat{};
   double duration{};      ///< simulated time of the run [s]
-  Parameters parameters;  ///< parameters, for an arm of its first drive; steps approximate growing faults
+  Parameters parameters;  ///< parameters of the drive, or of an arm's first drive; steps approximate growing faults
   std::vector<RunFault> faults;
   RunDuty duty;
   std::optional<ArmSpec> arm;  ///< arm and its motion, only in a plan of whole arms
@@ -57,13 +57,13 @@ public:
   /// Specification of a run. @throws InputError with file, line, key, value, unit and range.
   RunSpec run(std::uint64_t number) const;
 
-  /// The runs of a plan that have the same class and duty cycle.
+  /// The runs of a plan that have the same class and duty cycle. Each period, of period_ runs, has some of these runs.
   struct Block
   {
     const PlanNode::Entry* fault_class;
     const PlanNode* duty;
     std::vector<const Variable*> variables;
-    std::uint64_t first;     ///< number of the first run of the block
+    std::uint64_t first;     ///< number of the block's first run
     std::uint64_t together;  ///< number of successive runs of the block in each period
     std::uint64_t period{};  ///< number of runs from one period of the plan to the next
     std::uint64_t size{};    ///< number of runs of the block in all periods

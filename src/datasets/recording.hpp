@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// State of the drive at one instant, for the columns of a data set.
+/// State of the drive at one instant, from which the values in the columns of a data set are computed.
 struct Instant
 {
   JointOutputs outputs;

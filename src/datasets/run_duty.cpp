@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr Range LARGE{ -1e6, 1e6 };  // allowed values of a waveform
+constexpr Range LARGE{ -1e6, 1e6 };  // allowed values of a waveform, in its unit
 constexpr double BANDWIDTH = 8.0;    // default bandwidth of the speed control [Hz]
 
 /// Unit of the values of this key in a duty cycle.

@@ -33,7 +33,7 @@ namespace
 /// Lock for opening and closing a bag, which search for plugins (compression, encryption) and are not thread-safe.
 std::mutex g_opening;
 
-/// Writes a run. If this fails, the file is removed, so the error omits how to read an incomplete file.
+/// Writes a run. If this fails, the file is removed. The error therefore omits how to read an incomplete file.
 template <class Action>
 void writeOrRefuse(const Action& action)
 {

@@ -28,7 +28,7 @@ public:
     feeder_.feed(twin_, time);
     if (recording_.indicators && time > recording_.start)
     {
-      twin_.watchSignals(true);  // earlier, the first window would contain the start and differ from all others
+      twin_.watchSignals(true);  // earlier, the first window would contain the start, unlike all other windows
     }
     return twin_.step(end);
   }

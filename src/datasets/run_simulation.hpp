@@ -15,8 +15,8 @@ namespace hjt
 {
 struct RunCost
 {
-  double surfaces{};          ///< time for building or loading the response surfaces of the run [s]
-  double ends{};              ///< time before the first and after the last step, without that for surfaces [s]
+  double surfaces{};  ///< time for building or loading the response surfaces of the run [s]
+  double ends{};      ///< computing time before the first and after the last step, without that for surfaces [s]
   double real_time_factor{};  ///< simulated time over computing time, on one core [-]
 };
 

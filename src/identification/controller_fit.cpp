@@ -13,16 +13,16 @@ namespace hjt
 namespace
 {
 constexpr int COLUMNS = 6;
-constexpr int PIECES = 10;             // number of pieces; for the intervals, the fit omits one piece at a time
+constexpr int PIECES = 10;  // number of pieces of the recording; for the intervals, the fit omits one piece at a time
 constexpr double QUANTILE = 2.26;      // 97.5 % quantile of Student's distribution for PIECES pieces
-constexpr double LONGEST_LAG = 0.016;  // longest lag that the fit tries [s]
+constexpr double LONGEST_LAG = 0.016;  // longest lag of the current behind the errors that the fit tries [s]
 constexpr double LAG_STEP = 0.001;     // step from one lag to the next [s]
-constexpr double SLOWEST = 1.0;        // width of the moving mean that is subtracted from each column [s]
-constexpr double AT_REST = 0.01;      // speed over which the smooth sign of the speed changes; faster is motion [rad/s]
-constexpr double LEAST_MOTION = 5.0;  // least time in motion [s]
+constexpr double SLOWEST = 1.0;        // width of the moving mean that is subtracted from each column of the fit [s]
+constexpr double AT_REST = 0.01;       // speed of the smooth sign tanh(speed / AT_REST); faster is motion [rad/s]
+constexpr double LEAST_MOTION = 5.0;   // least time in motion for a fit [s]
 constexpr double LEAST_EXPLAINED = 1.0 / 3.0;
 constexpr double WIDEST_RATIO = 0.5;  // largest half width of angle_current / speed_current over this ratio [-]
-// Least change of the set point's speed from row to row that counts as a jump, beyond the neighbouring changes [rad/s].
+// Least jump of the set point's speed from row to row, beyond the changes of the neighbouring rows [rad/s].
 constexpr double JUMP = 0.1;
 constexpr double AT_LIMIT = 0.95;   // share of the limit above which a current counts as limited [-]
 constexpr double TRANSIENT = 0.25;  // time before and after a jump or a limited current that the fit excludes [s]
@@ -118,7 +118,7 @@ Column linearRows(const std::vector<ControllerRow>& rows, double period, double 
   return linear;
 }
 
-/// Half widths of the first two coefficients and of their ratio, from fits without one piece each (jackknife).
+/// Half widths of the first two coefficients and of their ratio, from fits that each omit one piece (jackknife).
 Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
 {
   Eigen::Matrix<double, 3, PIECES> found;
@@ -139,7 +139,7 @@ Eigen::Vector3d halfWidths(const Eigen::MatrixXd& columns, const Column& values)
          ((PIECES - 1.0) / PIECES * (found.colwise() - mean).rowwise().squaredNorm()).array().sqrt().matrix();
 }
 
-/// Friction in the fed-forward current: its constant part [A], and its part per speed [A.s/rad].
+/// Friction in the target current: its constant part [A], and its part per speed [A.s/rad].
 Eigen::Vector2d fedForward(const std::vector<ControllerRow>& rows)
 {
   Eigen::MatrixXd columns(rows.size(), 4);

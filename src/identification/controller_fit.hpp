@@ -26,7 +26,7 @@ struct ControllerFit
   double angle_half_width{};     ///< half width of the 95 % interval of `angle_current` [A/rad]
   double speed_current{};        ///< current per error of the speed [A.s/rad]
   double speed_half_width{};     ///< half width of the 95 % interval of `speed_current` [A.s/rad]
-  double position_half_width{};  ///< half width of the 95 % interval of the ratio angle_current / speed_current [1/s]
+  double position_half_width{};  ///< half width of the 95 % interval of angle_current / speed_current [1/s]
   double lag{};                  ///< lag of the recorded current behind the errors [s]
   /// Share of the variance of current minus rigid_current, for periods below 1 s, that the fit explains [-].
   double explained{};

@@ -91,7 +91,7 @@ std::array<CurrentError, 2> errorsOf(const Parameters& parameters, const JudgedP
   return { sums[0].result(), sums[1].result() };
 }
 
-/// Error of the simple fit, which gives the current as a function of load, sign of the speed and speed.
+/// Error of the simple fit, which computes the current from load, sign of the speed and speed.
 CurrentError simpleModelError(const std::vector<MotionSample>& train, const JudgedPart& judge)
 {
   constexpr double STANDSTILL = 0.005;  // largest speed of a joint at rest [rad/s]
@@ -120,7 +120,7 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
-/// Stores the inertia: the part in the load if the load was recorded, else the rotor's. It cannot be negative.
+/// Stores the inertia, which cannot be negative: that of the motor in a recorded load, else the rotor's inertia.
 void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   constexpr double LEAST = 1e-9;
@@ -136,7 +136,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   };
   if (value < 0.0)
   {
-    // The interval lies below the configured inertia, so the motion contradicts it. The least inertia is then stored.
+    // The interval lies below the configured inertia, so this inertia is wrong. The least possible one is then stored.
     const bool contradicted = found.refusal.empty() && value + found.half_width < parameter && !load_recorded;
     found.value = contradicted ? LEAST : parameter;
     if (!contradicted)
@@ -315,7 +315,7 @@ private:
     }
   }
 
-  /// Best lasting share at each presliding angle. It is found directly, because the error is linear in the share.
+  /// Best lasting share at each presliding angle. This share is found directly, because the error is linear in it.
   std::vector<Trial> fitted(const Eigen::ArrayXd& angles) const
   {
     Eigen::ArrayXd columns = Eigen::ArrayXd::Zero(angles.size());
@@ -368,7 +368,7 @@ private:
     {
       return value;
     }
-    // Vertex of the parabola through the best trial and its two neighbours, over the logarithm of the angle.
+    // Vertex of a parabola through the best trial and its two neighbours. Its abscissa is the logarithm of the angle.
     const double below = (best - 1)->squares;
     const double above = (best + 1)->squares;
     const double curvature = (above - 2.0 * best->squares + below) / (step * step);
@@ -429,7 +429,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
 
 namespace
 {
-/// Pools the errors of a part with the errors of the parts before it.
+/// Adds the error of a part to the sum over the parts before it, as root mean squares over all rows.
 void addError(const CurrentError& part, CurrentError& sum)
 {
   const auto rms = [](double a, std::size_t n, double b, std::size_t m)

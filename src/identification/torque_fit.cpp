@@ -61,7 +61,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
                           const std::function<NormalEquations(const Eigen::VectorXd& values)>& equations)
 {
   constexpr int MOST_STEPS = 100;
-  constexpr double SMALL = 1e-9;  // least relative change of the cost for another step [-]
+  constexpr double SMALL = 1e-9;  // least relative decrease of the cost for another step [-]
   Eigen::VectorXd values = start.cwiseMax(lowest).cwiseMin(highest);
   NormalEquations here = equations(values);
   double damping = 1e-4;
@@ -110,9 +110,9 @@ Eigen::VectorXd halfWidths(const Eigen::VectorXd& errors, const Eigen::MatrixXd&
 
 namespace
 {
-constexpr double OUTLIER = 3.0;        // error beyond which a block has less weight, in standard deviations [-]
+constexpr double OUTLIER = 3.0;        // error beyond which a block has less weight, over the standard deviation [-]
 constexpr double LEAST_GREASE = 0.05;  // least friction of the grease over the configured one [-]
-constexpr double NARROWED = 0.5;       // largest standard deviation after the fit over that of the prior [-]
+constexpr double NARROWED = 0.5;  // largest standard deviation of an identified quantity over that of its prior [-]
 constexpr Eigen::Index MIN_BLOCKS = 12;
 }  // namespace
 
@@ -241,7 +241,7 @@ FrictionFit::Row FrictionFit::factors(const Values& values)
   return factors;
 }
 
-/// Derivatives of the `factors` by the values.
+/// Derivatives of `factors` with respect to the values.
 Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> FrictionFit::slopes(const Values& values)
 {
   Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES> slopes = Eigen::Matrix<double, QUANTITIES + 1, QUANTITIES>::Zero();
@@ -252,7 +252,7 @@ Eigen::Matrix<double, FrictionFit::QUANTITIES + 1, FrictionFit::QUANTITIES> Fric
   return slopes;
 }
 
-/// Fits the values, then standard deviation and correlation of the errors. Repeats the fit with these.
+/// Fits the values. Then estimates standard deviation and correlation of the errors, and repeats the fit with these.
 void FrictionFit::solve(const std::function<void()>& look)
 {
   double correlation_rows = 1.0;
@@ -317,7 +317,7 @@ double FrictionFit::share(std::size_t quantity) const
 namespace
 {
 constexpr double WIDEST = 0.5;  // largest half width of a line's interval over its amplitude [-]
-// Least and largest resonance [Hz], damping [-] and lag [s].
+// Bounds of the fit: resonance of the load [Hz], its damping ratio [-], lag of the ripple behind the angle [s].
 const Eigen::Vector3d LOWEST(2.0, 0.05, -0.02);
 const Eigen::Vector3d HIGHEST(100.0, 1.0, 0.02);
 }  // namespace
@@ -368,7 +368,7 @@ bool RippleFit::anyLine() const
   return std::any_of(present_.begin(), present_.end(), [](bool present) { return present; });
 }
 
-/// Real and imaginary part of each line of TorqueRipple in each row; 0 for a line that was refused.
+/// Real and imaginary part of each line of TorqueRipple in each row, for amplitude 1; 0 for a refused line.
 Eigen::MatrixXd RippleFit::waves(const double* response) const
 {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(torque_.size(), RESONANCE);
@@ -385,7 +385,7 @@ Eigen::MatrixXd RippleFit::waves(const double* response) const
   return columns;
 }
 
-/// Derivative of the ripple torque in each row by each value.
+/// Derivative of the ripple torque in each row with respect to each value.
 Eigen::MatrixXd RippleFit::slopes(const Values& values) const
 {
   const double* response = values.data() + RESONANCE;
@@ -409,8 +409,8 @@ Eigen::MatrixXd RippleFit::slopes(const Values& values) const
   return slopes;
 }
 
-/// Chooses start values of resonance, damping and lag, as the best point of a coarse grid. At each point, the lines are
-/// fitted linearly.
+/// Chooses start values of resonance, damping and lag: the best point of a coarse grid. At each point of the grid, the
+/// lines are fitted linearly.
 void RippleFit::chooseResonance(const std::function<void()>& look)
 {
   double most = -1.0;
@@ -456,7 +456,7 @@ void RippleFit::solve()
   half_width_ = halfWidths(errors(columns, values_), columns);
 }
 
-/// Refuses the line with the widest interval, if too wide. @returns true if so; then the others need another fit.
+/// Refuses the line with the widest interval, if wider than WIDEST. @returns whether the others need another fit.
 bool RippleFit::refuseWorst()
 {
   double worst = WIDEST;

@@ -19,7 +19,7 @@ namespace hjt
 /// autocorrelations up to their first negative value. The computation takes as long as a Fourier transform of the rows.
 double correlationRows(const Eigen::VectorXd& residuals);
 
-/// A cost function near some values: its gradient, and its curvature `normal` for the linearised model.
+/// Gradient of a cost function at some values, and its curvature `normal` for the linearised model.
 struct NormalEquations
 {
   double cost{};
@@ -115,10 +115,10 @@ struct RippleRow
   double torque;    ///< measured minus predicted torque at the joint [N.m]
 };
 
-/// Fits the lines of TorqueRipple, including the resonance of the load, to RippleRow::torque by least squares, with
-/// less weight for outliers (Huber). A line whose interval is too wide is refused and zero. The fit uses rows up to the
-/// speed that a share KNOWN of the rows does not exceed, and at which a line of two cycles per turn of the motor has
-/// two rows per cycle. A line of four cycles per turn is refused if it has fewer than two rows per cycle at that speed.
+/// Fits the lines of TorqueRipple and the resonance of the load to RippleRow::torque by least squares, with less weight
+/// for outliers (Huber). A line whose interval is too wide is refused and zero. The largest speed of the fit is the lower
+/// of two: the speed that a share KNOWN of the rows does not exceed, and that at which a line of two cycles per turn of
+/// the motor has two rows per cycle. A line of four cycles is refused if it has fewer rows per cycle at this speed.
 class RippleFit
 {
 public:

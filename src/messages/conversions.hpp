@@ -120,7 +120,7 @@ void fillStress(Stamp stamp, const MeasuredGear& gear, const StressParameters& p
                 const FatigueLaw& fatigue_law, harmonic_joint_twin::Stress& message) noexcept;
 
 void fillSpan(const SignalSpan& span, double& least, double& mean, double& greatest) noexcept;
-/// State of the solver and ranges of the signals cover the steps after `since`.
+/// The state of the solver and the ranges of the signals cover the steps after `since`.
 bool fillHealth(Twin& twin, const SinceMessage& since, harmonic_joint_twin::Health& message) noexcept;
 
 harmonic_joint_twin::Indicators makeIndicators(const Parameters& parameters);

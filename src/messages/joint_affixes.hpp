@@ -20,7 +20,7 @@ struct JointAffixes
 /// The affixes as options of a command, for example " --prefix left_ --suffix _r"; empty if both affixes are empty.
 std::string optionsOf(const JointAffixes& affixes);
 
-/// Finds the affixes with which `names` contains all of `joints`. They are in the order of the names.
+/// Finds all affixes with which `names` contains all of `joints`. The affixes are in the order of the names.
 std::vector<JointAffixes> findAffixes(const std::vector<std::string>& joints, const std::vector<std::string>& names);
 
 /// The names without those of motors. In messages on a single joint, `NAME_motor` is the motor of joint NAME.

@@ -61,7 +61,7 @@ public:
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
   /// The noise of the encoders is that of the sample of publish.encoders_rate whose period contains the stamp.
   void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
-  /// Writes the values of one instant. Values that need a whole turn of the drive are marked as not valid.
+  /// Writes the values of one instant. The values that have a flag `*_valid` are not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;
 
 private:

@@ -13,12 +13,12 @@ namespace hjt
 {
 namespace
 {
-/// Cost of an arm from the gains that the recording states, as ArmFit::cost [-]. Stated gains and known gains of a type
-/// are exact, so a few gains that agree show the type of the arm.
+/// Part of an arm's ArmFit::cost that follows from the gains that the recording states [-]. These gains and the known
+/// gains of a type of joint are exact, so gains of a few joints show the type of the arm.
 double costOfGains(const ArmRecording& recording, const RecordingOptions& options)
 {
-  constexpr double KNOWN = 0.01;  // standard deviation of a gain's logarithm [-]
-  constexpr double MOST = 10.0;   // largest cost of one joint, whose type's gain may not be known [-]
+  constexpr double KNOWN = 0.01;  // standard deviation of the logarithm of a gain [-]
+  constexpr double MOST = 10.0;   // largest cost of one joint, because the gain of its type may be unknown [-]
   double cost = 0.0;
   for (std::size_t i = 0; i < recording.joints().size(); ++i)
   {
@@ -33,8 +33,8 @@ double costOfGains(const ArmRecording& recording, const RecordingOptions& option
   return cost;
 }
 
-/// Compares the joints with the friction that the controller expects, if no joint has a reference of its own and the
-/// controller expects the friction of sound joints.
+/// Compares the friction of the joints with the friction that the controller expects, if no joint has a reference of
+/// its own and the controller expects the friction of sound joints.
 void holdAgainstController(const AssessedJoints& joints)
 {
   std::vector<const JointEvidence*> evidences;
@@ -95,7 +95,7 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
         }
         arm.joints[i]->update(sample);
         samples[i] = sample;
-        if (load && i + 1 == samples.size())  // rows of one time come one after the other
+        if (load && i + 1 == samples.size())  // samples of the same time come in the order of the joints
         {
           load->add(samples,
                     [&](std::size_t joint) -> const MotionDriven& { return arm.joints[joint]->evidence().twin(); });
@@ -126,8 +126,8 @@ ArmAssessment pass(const ArmRecording& recording, const AssessmentSettings& sett
   return arm;
 }
 
-/// Adds the name of another shipped arm with the same joints to the misfits, if that arm explains the recording so much
-/// better that it contradicts the given arm. If the given arm is a file of the user's own, no name is added.
+/// If another shipped arm with the same joints explains the recording so much better that the given arm must be wrong,
+/// adds the name of the other arm to the misfits. Does nothing if the given arm is a file of the user's own.
 void nameOther(const ArmRecording& recording, std::vector<Misfit>& misfits)
 {
   if (!mayBeOtherArm(misfits))
@@ -152,11 +152,11 @@ std::vector<ArmFit> rankArms(const RecordingOptions& options, const std::vector<
   own.load = LOAD_OF_ARM;
   if (own.rows)
   {
-    own.assignments.emplace_back("telemetry.effort=current");  // rows in memory are currents
+    own.assignments.emplace_back("telemetry.effort=current");  // rows in memory hold currents as efforts
   }
   std::vector<ArmCandidate> candidates;
-  std::unique_ptr<const ArmRecording> first;  // has the rows of all candidates
-  std::vector<std::string> others;            // arms whose joints have other names, and so other rows
+  std::unique_ptr<const ArmRecording> first;  // all candidates use its rows
+  std::vector<std::string> others;            // arms with other names of joints, and so with other rows
   for (const std::string& name : names)
   {
     own.arm = name;
@@ -209,7 +209,7 @@ ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings
     arm = pass(recording, settings, false, false, fit);
     if (!law.isTrying())
     {
-      break;  // the trial of the load failed, and another pass would find the same load
+      break;  // the tried load does not explain the currents, and another pass would find this load again
     }
   }
   arm.assumed = law.counts();

@@ -36,12 +36,12 @@ public:
   const JointEvidence& evidence() const { return evidence_; }
 
   const OwnReference& own() const { return own_; }
-  /// Whether a reference of the joint's friction is known.
+  /// Whether a reference of the joint's friction is known, by identification or from earlier reports.
   bool hasReference() const { return is_identified_ || !own_.friction.empty(); }
-  /// Compares the friction with that which the arm's controller expects, unless a reference is known.
+  /// Compares the friction with the friction that the arm's controller expects, unless a reference is known.
   void holdAgainstController() { has_controller_ = true; }
 
-  /// `factor` and `deviation`: common factor of the arm's joints, and the standard deviation of its logarithm [-].
+  /// `factor`: common factor of the joints' friction [-]. `deviation`: standard deviation of its logarithm [-].
   JointContext context(const Misfit& misfit, double factor = 1.0, double deviation = UNWITNESSED) const
   {
     return { own_, is_identified_, has_controller_, factor, misfit, deviation };
@@ -80,17 +80,17 @@ struct ArmAssessment
 
 struct AssessmentSettings
 {
-  /// Makes the joint with a number. It is called for each reading of the recording. Null: a plain AssessedJoint.
+  /// Makes the joint with this number, once for each reading of the recording. Null: a plain AssessedJoint is made.
   std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
   bool beside_controller{ true };  ///< whether the friction that the controller expects may be the reference
-  /// Whether another shipped arm that explains the recording clearly better prevents verdicts.
+  /// Whether the joints get no verdict if another shipped arm explains the recording clearly better than this arm.
   bool looks_for_arm{ true };
   bool gives_notice{};  ///< whether the user gets notices of defects of the recording
 };
 
-/// Reads and judges the recording. If its currents show another payload or mounting, the function reads it again with
-/// that load, and keeps the load if it explains the currents. `fit` gets the result of the last reading.
-/// @throws ParameterError, InputError.
+/// Reads and judges the recording. If the currents show another payload or mounting than the configured one, the
+/// function reads the recording again with the load found, and keeps this load if it explains the currents. `fit` gets
+/// the result of the last reading. @throws ParameterError, InputError.
 ArmAssessment assess(ArmRecording& recording, const AssessmentSettings& settings, RecordingFit& fit);
 
 /// Ranks the named arms, the best first, by how well they explain the first two minutes of the recording and the gains

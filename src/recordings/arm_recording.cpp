@@ -18,8 +18,8 @@ namespace hjt
 {
 namespace
 {
-/// Parameters of a joint of an arm. `gain` is the gain that the recording states, or NaN. An identified or configured
-/// gain takes precedence over `gain`.
+/// Parameters of a joint of an arm. `gain`: torque per current that the recording states [N.m/A], or NaN. An identified
+/// or configured gain takes precedence over `gain`.
 Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptions& options)
 {
   ParameterMap map = armJointParameters(joint, configDirectory(options), options.identified);
@@ -71,7 +71,7 @@ ArmRecording::ArmRecording(const RecordingOptions& options)
 {
   if (!is_arm_)
   {
-    parameters_.push_back(loadParameters(options));  // errors of the parameters are reported before those of the file
+    parameters_.push_back(loadParameters(options));  // errors of parameters are reported before those of the file
   }
   source_ = motionSource(options);
   if (isFile() && !options.stated)
@@ -287,7 +287,7 @@ void ArmRecording::noticeOf(const MotionFindings& found) const
   {
     options_.watch.notice(source_.path + ": " + remark);
   }
-  if (!is_arm_ && found.misfit.exists())  // RecordingFit has the misfit of an arm
+  if (!is_arm_ && found.misfit.exists())  // of an arm, RecordingFit finds the misfit
   {
     options_.watch.notice(source_.path + ": " + found.misfit.clause);
   }

@@ -15,16 +15,16 @@
 
 namespace hjt
 {
-/// One joint of the arm at the time of a row.
+/// Values of one joint of an arm in a row.
 struct ArmJointRow
 {
-  MotionSample row;        ///< has the chosen load at the output; rates are set only for a joint of an arm
-  double recorded_load{};  ///< load at the joint as the recording gives it [N.m]
-  double motor_part{};     ///< torque of the motor's inertia, a part of the torque that a controller states [N.m]
+  MotionSample row;  ///< has the chosen load at the output; speed and acceleration are set only for a joint of an arm
+  double recorded_load{};  ///< load at the joint as the recording states it [N.m]
+  double motor_part{};     ///< torque of the motor's inertia that a controller counts as load of the joint [N.m]
 };
 
-/// The recording of an arm or of a single joint, and the parameters of the joints' twins. A single joint is an arm of
-/// one joint; its load is the recorded load if there is one.
+/// The recording of an arm or of a single joint, and the parameters of the joints' twins. A single joint counts as an
+/// arm of one joint. The load of a single joint is the recorded load, if the recording has one.
 class ArmRecording
 {
 public:
@@ -37,9 +37,9 @@ public:
   const RecordingOptions& options() const { return options_; }
   bool isArm() const { return is_arm_; }
   bool isFile() const { return !options_.rows; }
-  const ArmDescription& arm() const { return arm_; }  ///< for a single joint, an arm that has only this joint
+  const ArmDescription& arm() const { return arm_; }  ///< for a single joint, an arm with only this joint
   const std::vector<ArmJoint>& joints() const { return arm_.joints; }
-  /// Replaces the load of the arm. `arm` is the same arm, with the other load.
+  /// Replaces the load of the arm. `arm`: the same arm with the new load. `course`: payloads that begin at later times.
   void setLoad(ArmDescription arm, PayloadCourse course)
   {
     arm_ = std::move(arm);
@@ -47,11 +47,11 @@ public:
   }
   MotionSource source(std::size_t joint) const;        ///< source that reads only this joint
   std::string twinNamespace(std::size_t joint) const;  ///< namespace of the twin's topics, as in arm.launch
-  /// Parameters of a joint. For an arm, telemetry.inertia_in_load is 0 unless the load is the recorded one.
+  /// Parameters of a joint. In an arm, telemetry.inertia_in_load is 0 unless the recorded load is used.
   const Parameters& parameters(std::size_t joint) const { return parameters_[joint]; }
   const std::vector<Parameters>& parameters() const { return parameters_; }
-  /// Gain of each joint that the recording states (RecordedStatements) [N.m/A], NaN if it states none. An identified or
-  /// configured gain takes precedence.
+  /// Gain of each joint, as the recording states it (RecordedStatements) [N.m/A]; NaN if the recording states none. An
+  /// identified or configured gain takes precedence over the stated gain.
   const std::vector<double>& statedGains() const { return stated_gains_; }
   bool hasRecordedLoad() const { return has_load_; }
   /// Whether the joints' load is the recorded load.
@@ -61,8 +61,8 @@ public:
     return uses_recorded_ ? LoadOrigin::RECORDED : is_arm_ ? LoadOrigin::ARM : LoadOrigin::CONFIGURED;
   }
 
-  /// Calls `visit` at each time at which all joints have a row, with these rows. A row without a load has a load of 0.
-  /// `fit` gets all rows of an arm. Memory does not grow with the recording. @throws InputError.
+  /// Calls `visit` for each time at which all joints have a row, with the rows of this time. A row without a load has a
+  /// load of 0. `fit` gets all rows of an arm. The use of memory does not grow with the recording. @throws InputError.
   MotionFindings read(const VisitRows& visit, RecordingFit& fit) const;
 
   /// Calls `visit` with the rows as they are recorded. In rows of an arm `current` is the effort. @throws InputError.
@@ -72,7 +72,7 @@ public:
   /// the configured load. @throws InputError.
   MotionFindings readSamples(const VisitSample& visit, RecordingFit& fit) const;
 
-  /// Tells the user why joints of an arm cannot be judged. It does not tell of wrong stamps.
+  /// Tells the user why joints of an arm cannot be judged. Wrong stamps are left to the other noticeOf.
   void noticeOf(const RecordingFit& fit) const;
   /// Tells the user of defects of the whole recording, including wrong stamps.
   void noticeOf(const MotionFindings& found) const;
@@ -87,9 +87,9 @@ private:
   PayloadCourse course_;
   std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
-  std::vector<double> inertias_in_load_;  // motors' inertia in a controller's torque, at the joints [kg.m^2]
+  std::vector<double> inertias_in_load_;  // motor inertia in a controller's torque of each joint [kg.m^2]
   MotionSource source_;
-  std::string payload_text_;  // remark on a payload that the recording states; empty: the file's payload counts
+  std::string payload_text_;  // remark on a stated payload; empty: the payload of the arm's file counts
   bool has_load_{};
   bool uses_recorded_{};
 };

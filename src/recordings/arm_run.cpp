@@ -36,7 +36,7 @@ class ArmRows
 {
 public:
   /// `spec` describes the run. ArmSpec::arm.state_rate is the rate of the rows [Hz] and divides solver.rate. If `path`
-  /// is empty, no file is written. `moving` is at the first row and must live as long as this object.
+  /// is empty, no file is written. `moving` is at the time of the first row and must live as long as this object.
   /// @throws InputError.
   ArmRows(const std::string& path, const RunSpec& spec, const MovingArm& moving)
     : moving_(moving), begin_(moving.twin().stamp()), end_(begin_), path_(path), spec_(spec)
@@ -70,7 +70,7 @@ public:
       end_ = stamp;
       on_surface_ += stamp > begin_ && allOnSurface(moving_.twin()) ? 1 : 0;
       failed_ = countersOf(moving_.twin()).solver_failures > 0;
-      if (!failed_)  // a failed twin ends the file, as in a data set
+      if (!failed_)  // as in a data set, the file ends where the solver of a twin fails
       {
         file_->record(stamp, recorder);
       }
@@ -102,7 +102,7 @@ public:
     }
   }
 
-  /// Whether the file holds a run. The file of a run exists only after `close`.
+  /// Whether the file is a run, that is, a bag or an HDF5 file. Such a file exists only after `close`.
   bool isRun() const { return file_ != nullptr; }
 
 private:

@@ -30,16 +30,16 @@ struct ArmRunOptions : ConfigurationOptions
   std::string arm;                      ///< name of an arm in config/arms, or path of its file
   std::string identified;               ///< directory of overlays, SHORT_NAME.yaml; empty: no overlays
   std::string out;                      ///< file that gets every row: CSV, bag or HDF5, by its ending; empty: no file
-  std::optional<double> rate;           ///< rate of the rows [Hz]; none: that of the arm's states
+  std::optional<double> rate;           ///< rate of the rows [Hz]; none: rate of the arm's states
   bool force{};                         ///< whether existing files are overwritten
-  /// Called with the time [s] and the row, for every row.
+  /// Function that is called for every row, with the time [s] and the row.
   std::function<void(double, const ArmRow&)> take{ [](double, const ArmRow&) {} };
   Watch watch;
 };
 
 void addOptions(OptionTable& table, ArmRunOptions& options);
 
-/// Errors over the rows of a motion.
+/// Rms and largest magnitude of an error in the rows of a motion.
 class RunErrors
 {
 public:
@@ -59,7 +59,7 @@ private:
 struct ArmRunJoint
 {
   std::string name;       ///< short name of the joint
-  RunErrors angle_error;  ///< actual angle less target angle [rad]
+  RunErrors angle_error;  ///< actual less target angle of the joint [rad]
   Rms current;            ///< current of the motor [A]
 };
 
@@ -74,11 +74,11 @@ struct ArmRun
 {
   double duration{};                 ///< simulated time, including the start while the brakes hold [s]
   double wall_time{};                ///< computing time, without the time for building tables [s]
-  RunErrors tool_error;              ///< error of the tool's position over the rows [m]
+  RunErrors tool_error;              ///< distance of the tool from its target position in the rows [m]
   double energy_residual{};          ///< energy that the drives delivered less the change of the arm's energy [J]
   std::vector<ArmRunJoint> joints;   ///< joints from the base on; none if the run was stopped before the first step
   std::optional<ArmRunStop> stop;    ///< protective stop; none if the motion was completed
-  std::uint64_t feedback_limited{};  ///< how often a joint's feedback was at its limit while its brake was off [-]
+  std::uint64_t feedback_limited{};  ///< number of times that the feedback of an unbraked joint was at its limit [-]
   TwinCounters counters;             ///< sum of the counters of all drives
 };
 

@@ -122,7 +122,7 @@ std::vector<std::string> nextCommands(const RecordingCheck& check, const Checked
     return {};  // a recording in memory has no file to name in a command
   }
   const bool is_mended = !arm.tried.empty() && arm.tried.front().helps;
-  // The remedy is the last option. It replaces or overrides an option for the same value.
+  // The option of the remedy is the last one, so that it overrides or replaces an option for the same value.
   const std::string remedy = is_mended ? arm.tried.front().options : "";
   std::string reading = optionsOf(arm.affixes);
   if (options.time_scale != 1.0 && remedy.find("--time-scale") == std::string::npos)

@@ -42,7 +42,7 @@ void refuseReferenceAsReport(const ComparisonOptions& options)
   }
 }
 
-/// Refuses references of another shipped arm, by the arms' names. A file of the user's own may be for any arm.
+/// Refuses a reference that is a report on another shipped arm. A file of the user's own may describe any arm.
 void refuseReferenceOfOtherArm(const ComparisonOptions& options)
 {
   const auto is_name = [](const std::string& arm) { return arm.find_first_of("./") == std::string::npos; };
@@ -56,7 +56,7 @@ void refuseReferenceOfOtherArm(const ComparisonOptions& options)
   }
 }
 
-/// The value, or none if the friction of the joint is not judged.
+/// `value`, or none if the friction of the joint is not judged.
 std::optional<double> number(const ComparedJoint& line, double value)
 {
   return line.friction ? std::make_optional(value) : std::nullopt;
@@ -86,11 +86,11 @@ const std::vector<Column<ComparedJoint>> ARM_COLUMNS{
   { "current_residual_rms", &ComparedJoint::residual_rms, "less predicted [A]" }
 };
 
-/// Sentence on the common factor of a group of joints; empty if the factor is close to 1.
+/// Sentence on the common factor of a group's friction; empty if this factor is unknown or close to 1.
 std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>& lines)
 {
   constexpr double NOTEWORTHY = 0.1;
-  constexpr double MOST = 2.5;  // largest factor that temperature or lubricant causes [-]
+  constexpr double MOST = 2.5;  // largest factor of friction that temperature or lubricant causes [-]
   if (!group.is_known || std::abs(group.median - 1.0) < NOTEWORTHY)
   {
     return {};
@@ -138,7 +138,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
   return text;
 }
 
-/// Sentence that names the joints whose friction is judged, but not with the given reference.
+/// Sentence that names the joints whose friction is judged, but not with the user's reference.
 std::string withoutReference(const std::vector<ComparedJoint>& lines)
 {
   std::vector<std::string> names;
@@ -154,8 +154,8 @@ std::string withoutReference(const std::vector<ComparedJoint>& lines)
              "The reference did not judge the friction of " + joined(names) + ". The twin's friction replaces it. ";
 }
 
-/// Sentence on the common factors by which the friction of joints is divided before the verdict. It names only the
-/// factors that differ from the arm's factor.
+/// Sentence on the common factors by which the friction of joints is divided before the verdict. The sentence names
+/// only the factors that differ from `of_whole_arm`, the factor of the whole arm.
 std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_arm)
 {
   std::vector<std::pair<std::string, std::vector<std::string>>> shares;  // factor, and joints with this factor
@@ -177,7 +177,7 @@ std::string sharedText(const std::vector<ComparedJoint>& lines, double of_whole_
                               joined(shares, ", ", one) + " times the reference's friction. ";
 }
 
-/// Sentences on common factors of the joints, and on each joint that differs from a sound joint or is not judged.
+/// Sentences on common factors of friction, and on each joint that differs from a sound joint or is not judged.
 std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& arm, bool has_reference)
 {
   std::string text;
@@ -248,7 +248,7 @@ Json documentOfArm(const ComparisonOptions& options, const ComparedRecording& co
            { "joints", tableOf(compared).rows() } };
 }
 
-/// Directory of a joint's report or reference. `whole` is the directory of the whole arm's.
+/// Directory of a joint's report or reference. `whole`: directory of the report or reference of the whole arm.
 std::string directoryOf(const ArmRecording& recording, const std::string& whole, std::size_t joint)
 {
   return recording.isArm() && !whole.empty() ? (fs::path(whole) / recording.joints()[joint].short_name).string() :
@@ -288,14 +288,14 @@ std::unique_ptr<RecordingComparison> prepareJoint(const ComparisonOptions& optio
                                                readSoundJoint(references, recording.parameters(joint)));
 }
 
-/// Compares the recording and writes the data of the pages into options.report, unless that is empty.
+/// Compares the recording. Writes the data of the pages into options.report, unless options.report is empty.
 ComparedRecording compareInto(const ComparisonOptions& options)
 {
   refuseReferenceAsReport(options);
   ArmRecording recording(options);
   prepareReports(options, recording);
   ComparedRecording compared;
-  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints of the last reading
+  std::vector<RecordingComparison*> joints(recording.joints().size());  // joints at the last reading of the recording
   AssessmentSettings settings;
   settings.make_joint = [&](std::size_t i)
   {

@@ -64,13 +64,13 @@ struct ComparedRecording
 {
   bool is_arm{};
   std::string level;
-  std::string text;  ///< sentences for the user on the joints that differ or are not judged
+  std::string text;  ///< sentences for the user on the joints that differ from sound joints or are not judged
   bool is_judged{};
   std::size_t not_judged{};  ///< number of joints that are not judged
   HealthLevel health{};      ///< worst level of the joints
   MotionFindings found;
   AssumedLoad assumed;                ///< load that the joints are judged with
-  ArmFriction friction;               ///< friction that the joints have in common
+  ArmFriction friction;               ///< common factors of the joints' friction
   std::vector<ComparedJoint> joints;  ///< joints from the base on; none if the comparison was stopped
   Json document;                      ///< data of the page
   std::string page;                   ///< path of the page; empty: none

@@ -26,7 +26,7 @@ bool beginsWith(const std::string& text, const std::string& begin)
   return text.compare(0, begin.size(), begin) == 0;
 }
 
-/// Name of a PlotJuggler column, TOPIC/NAME/quantity, in a controller's recording. Other names are not changed.
+/// Converts a PlotJuggler name of a column, TOPIC/NAME/quantity, to a controller's name. Other names are not changed.
 std::string ofPlotJuggler(const std::string& column)
 {
   static const std::array<std::pair<const char*, const char*>, 3> QUANTITIES{
@@ -61,7 +61,7 @@ std::string ofPlotJuggler(const std::string& column)
 constexpr std::size_t JOINTS = 6;
 constexpr std::size_t COLUMNS = 4 * JOINTS;
 
-/// Place of each quantity's first column in a row. A quantity has one column for each joint.
+/// Index of the first column of each quantity in a row. A quantity has one column for each joint.
 enum Column : std::size_t
 {
   CURRENT = 0,
@@ -99,12 +99,12 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
   return true;
 }
 
-/// Median of the ratios, or NaN if the ratios disagree or too few of the rows at rest have a ratio.
+/// Median of the ratios; NaN if the ratios disagree, or if too few of the `rows` rows at rest have a ratio.
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // largest number of rows at rest for one row with a ratio
-  // Largest relative deviation of a ratio [-]; a controller computes torque and current with the same numbers.
+  constexpr std::size_t SHARE = 5;  // one ratio is enough for up to so many rows at rest
+  // Largest median deviation of the ratios over their median [-]; a controller computes both columns with one gain.
   constexpr double AGREE = 0.005;
   if (ratios.size() < std::max(LEAST, rows / SHARE))
   {
@@ -122,9 +122,9 @@ double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 
 std::vector<double> readStatedGains(const MotionSource& source)
 {
-  constexpr int ROWS = 50000;             // number of rows that are read: several minutes at any usual rate
-  constexpr double LEAST_CURRENT = 0.01;  // least current whose recorded digits are precise enough [A]
-  constexpr double WIDEST = 100.0;        // largest ratio of true torque and current [N.m/A]
+  constexpr int ROWS = 50000;             // number of rows that are read: 100 s at 500 Hz
+  constexpr double LEAST_CURRENT = 0.01;  // least current [A] whose recorded digits are precise enough for a ratio
+  constexpr double WIDEST = 100.0;        // largest plausible ratio of torque to current [N.m/A]
   NumberTable<COLUMNS> table(source.path, columnNames(), COLUMNS, COLUMNS, controllerColumns);
   if (!table.hasColumn(CURRENT) || !table.hasColumn(MOMENT))
   {

@@ -29,8 +29,8 @@ namespace
 {
 constexpr double VERDICT_RATE = 1.0;  // rate of the verdicts [Hz]
 
-/// Bag with the topics that the node publishes beside a robot, made offline from a recording. The bag also gets all
-/// messages of the recording, if that is a bag of ROS 1.
+/// Bag with the topics that the node publishes beside a robot, made offline from a recording. If the recording is a bag
+/// of ROS 1, this bag also gets all messages of the recording.
 class TrackedBag
 {
 public:
@@ -70,7 +70,7 @@ public:
     }
   }
 
-  /// Writes a comparison of the joint `joint`, after the messages that were recorded before the comparison.
+  /// Writes a comparison of the joint with number `joint`, after the messages that were recorded before the comparison.
   void offer(std::size_t joint, const Comparison& comparison, const Tracker& tracker)
   {
     const Stamp stamp = start_ + std::llround(1e9 * comparison.time);
@@ -78,7 +78,7 @@ public:
     outputs_[joint]->offer(stamp, comparison, tracker);
   }
 
-  /// Starts the verdicts. `trackers` are in the order of the joints. `arm`: assessment of the whole recording.
+  /// Begins to write verdicts. `trackers` are in the order of the joints. `arm`: assessment of the whole recording.
   void judge(const std::vector<Tracker*>& trackers, const ArmAssessment& arm)
   {
     for (std::size_t i = 0; i < trackers.size(); ++i)
@@ -180,7 +180,7 @@ const std::vector<Column<Comparison>> COLUMNS{
 class Follower
 {
 public:
-  /// `bag` gets the comparisons of the joint with this `number`, unless it is null.
+  /// `bag` gets the comparisons of the joint with this `number`. Null: no bag is written.
   Follower(const ArmRecording& recording, const FollowOptions& options, TrackedBag* bag, std::size_t number)
     : recording_(recording)
     , options_(options)
@@ -250,15 +250,15 @@ private:
     }
   }
 
-  /// `motor_part`: torque of the motor's inertia that a controller counts as load of the joint, but the arm's load
-  /// lacks [N.m].
+  /// `motor_part`: torque of the motor's inertia [N.m]. A controller counts it as load of the joint, but the load that
+  /// is computed from the arm lacks it.
   void take(Comparison now, double motor_part)
   {
     if (bag_ != nullptr)
     {
       bag_->offer(number_, now, tracker_);
     }
-    // The column holds the load as a controller counts it, with a part of the motor's inertia.
+    // The column `load_torque` holds the load as a controller counts it, with a part of the motor's inertia.
     now.load_torque += has_arm_load_ ? motor_part : 0.0;
     current_.add(now.current.measured);
     residual_.add(now.current.residual());
@@ -319,7 +319,7 @@ private:
   StampPeriods periods_{ VERDICT_RATE };
 };
 
-/// Makes the bag that the options name; null if they name none.
+/// Makes the bag that options.bag names; null if it names none.
 std::unique_ptr<TrackedBag> bagOf(const ArmRecording& recording, const FollowOptions& options)
 {
   if (options.bag.empty())

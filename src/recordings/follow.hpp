@@ -18,9 +18,9 @@ namespace hjt
 struct FollowOptions : RecordingOptions
 {
   InputMode mode{ InputMode::MOTION };
-  std::string out;  ///< CSV file of every row, for an arm a directory; empty: no file
+  std::string out;  ///< CSV file of every row; for an arm, a directory with a file for each joint; empty: no file
   std::string bag;  ///< bag with the topics of a node that runs beside a robot; empty: no bag
-  /// Called with the joint's number and the comparison, for every row of every joint.
+  /// Function that is called for every row of every joint, with the joint's number and the comparison.
   std::function<void(std::size_t, const Comparison&)> take{ [](std::size_t, const Comparison&) {} };
 };
 

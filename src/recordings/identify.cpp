@@ -84,7 +84,7 @@ bool saysSomething(const Identification& found)
                      [](const RippleLine& line) { return line.refusal.empty() && line.half_width < line.amplitude; });
 }
 
-/// Warns the user if the result for one joint is poor or empty.
+/// Warns the user if nothing was identified, or if the identified parameters are worse than the configured ones.
 void noticeOf(const IdentifiedJoint& joint, bool any, const Watch& watch)
 {
   const JudgedErrors& judged = joint.found.judged;
@@ -116,8 +116,8 @@ void noticeOfSimpleFit(const IdentifiedJoint& joint, const Watch& watch)
 }
 
 constexpr int ARM_FOLDS = 5;
-/// Largest ratio at which the ripple of an arm's joint is kept [-]: error of the current with ripple over the error
-/// without ripple, in moving rows of the pieces that the fit did not use.
+/// The ripple of an arm's joint is kept up to this ratio [-]: error of the current with ripple over the error without
+/// ripple, in moving rows of the pieces that the fit did not use.
 constexpr double RIPPLE_GAIN = 0.95;
 
 /// @throws InputError if the options name a part to judge for an arm, or a part that ends before its begin.
@@ -147,7 +147,7 @@ void chooseParts(const IdentifyOptions& options, double duration, double last, I
   joint.judge = options.judge.value_or(is_arm ? whole : Span{ third, duration + PAST_THE_END });
 }
 
-/// Number of pieces, each of which is predicted by a fit to the others. Default for an arm: ARM_FOLDS.
+/// Number of pieces, each of which is predicted by a fit to the other pieces. Default for an arm: ARM_FOLDS.
 int foldsOf(const IdentifyOptions& options)
 {
   return options.folds > 0 || options.arm.empty() ? options.folds : ARM_FOLDS;
@@ -369,7 +369,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
 {
   const auto list = [](const std::array<double, 3>& values)
   { return std::vector<double>(values.begin(), values.end()); };
-  constexpr double KNOWN = 5.0;  // largest half width of a mass that is known [kg]
+  constexpr double KNOWN = 5.0;  // largest half width of a payload's mass that counts as known [kg]
   const std::string mass = found.mass_half_width < KNOWN ?
                                shortNumber(found.mass) + " +- " + shortNumber(found.mass_half_width) + " kg" :
                                "not known: the arm hardly moves, or takes too few poses";

@@ -15,10 +15,10 @@ namespace hjt
 {
 struct IdentifyOptions : RecordingOptions
 {
-  std::string out;            ///< overlay to write, for an arm a directory of overlays; empty: no file
-  std::optional<Span> train;  ///< part to identify from; none: the first third, for an arm the whole recording
-  std::optional<Span> judge;  ///< part to test on; none: the last two thirds, for an arm the whole recording
-  int folds{};  ///< number of pieces, 2 to 100, each predicted from the others; 0: no pieces, for an arm 5
+  std::string out;            ///< overlay to write; for an arm, a directory of overlays; empty: no file
+  std::optional<Span> train;  ///< part to identify from; none: the first third, or the whole recording of an arm
+  std::optional<Span> judge;  ///< part to test on; none: the last two thirds, or the whole recording of an arm
+  int folds{};  ///< number of pieces, 2 to 100, each predicted by a fit to the others; 0: none, or 5 for an arm
 };
 
 void addOptions(OptionTable& table, IdentifyOptions& options);
@@ -30,7 +30,7 @@ struct IdentifiedJoint
   Span train;
   Span judge;
   Identification found;
-  JudgedErrors left_out;  ///< errors on the pieces, each predicted from the others; empty without pieces
+  JudgedErrors left_out;  ///< errors on the pieces, each predicted by a fit to the other pieces; empty without pieces
   std::string refusal;    ///< why the joint keeps its configured parameters; empty if it was identified
 };
 

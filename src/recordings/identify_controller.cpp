@@ -23,7 +23,7 @@ namespace
 constexpr std::array QUANTITIES{ "target_q_", "target_qd_", "target_current_", "target_moment_",
                                  "actual_q_", "actual_qd_", "actual_current_" };
 
-/// Largest speed gain, as a multiple of the gain of ArmController::defaultGains [-]. With twice the default gain the
+/// Largest speed gain that is stored, over the gain of ArmController::defaultGains [-]. With twice the default gain the
 /// control loop of a wrist becomes unstable, because the twin's loop lacks the filters of a real controller.
 constexpr double MOST_SPEED_GAIN = 1.5;
 
@@ -34,7 +34,7 @@ struct Recorded
   std::vector<std::vector<double>> angles;         // actual angles of each joint [rad]
 };
 
-/// Delay of the actual speeds relative to the rates of the actual angles, by least squares; 0 or more [s].
+/// Delay of the recorded speeds behind the rates of change of the recorded angles, by least squares; 0 or more [s].
 double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<double>& angles, double period)
 {
   double products = 0.0;
@@ -50,8 +50,8 @@ double ageOfSpeeds(const std::vector<ControllerRow>& rows, const std::vector<dou
   return squares > 0.0 ? std::max(products / squares, 0.0) : 0.0;
 }
 
-/// Computes the errors that the controller acted on. The controller receives set points with a delay. It compares the
-/// speeds of the set points with actual speeds, which have a delay of their own.
+/// Corrects the errors in `rows` to those that the controller acted on. The controller receives set points late by
+/// `delay` [s]. It compares their speeds with measured speeds that are late by `speed_age` [s].
 void takeDelays(double delay, double speed_age, double period, std::vector<ControllerRow>& rows)
 {
   const std::vector<ControllerRow> logged = rows;

@@ -14,7 +14,7 @@ struct IdentifiedController
 {
   std::string name;  ///< short name of the joint
   ControllerFit fit;
-  bool is_limited{};  ///< whether the speed gain was limited to what the twin's control loop bears
+  bool is_limited{};  ///< whether the speed gain was limited, because the twin's loop would otherwise be unstable
 };
 
 /// Identifies the gains of the controller for all joints of an arm (fitController). The recording is a table with the

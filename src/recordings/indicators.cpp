@@ -32,8 +32,8 @@ struct WindowSeries
 /// stamps. A jitter of 0.05 ms at 2 kHz changed the stiffness K1 by 0.65 %, and a gap of 1 s changed K1 by 1.4 %.
 void noticeSteps(std::vector<float> steps, const std::string& recording, const Watch& watch)
 {
-  constexpr double GAP = 10.0;     // least gap, in usual steps; filters bridge shorter gaps [-]
-  constexpr double JITTER = 0.05;  // least rms jitter as a share of a usual step [-]
+  constexpr double GAP = 10.0;     // least gap over the usual step; filters bridge shorter gaps [-]
+  constexpr double JITTER = 0.05;  // least rms jitter of the steps that the user is told of, over the usual step [-]
   if (steps.size() < 2)
   {
     return;
@@ -96,7 +96,7 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   return windows;
 }
 
-/// All windows of one recording, which may be that of the joint or of its twin.
+/// All windows of one recording, either of the joint or of its twin.
 WindowSeries readOne(const std::string& path, const SignalOptions& signals, const IndicatorsOptions& options)
 {
   if (options.windows)
@@ -199,11 +199,11 @@ AssessedWindows assess(const IndicatorsOptions& options, Assessor& assessor)
   return found;
 }
 
-/// Warns the user if a cause was sought with signatures of another gear, much stiffer or softer than the reference's.
+/// Warns the user if a cause was sought with signatures of a gear that is much stiffer or softer than the reference.
 void noticeOtherGear(const std::vector<WindowResult>& windows, const Assessor& assessor, const std::string& signatures,
                      const Watch& watch)
 {
-  // Stiffness differs by a factor of at least 1.9 from one gear size to the next, and of at most 1.25 within a size.
+  // Stiffness differs by a factor of at least 1.9 from one gear size to the next, but of at most 1.25 within one size.
   constexpr double ALIKE = 1.6;
   constexpr std::size_t K1 = indexOf(ScalarIndicator::TORSIONAL_STIFFNESS);
   const double theirs = assessor.signatures().sound[K1];

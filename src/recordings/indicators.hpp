@@ -40,7 +40,7 @@ struct AssessedWindows
   std::vector<UnreadRecording> unread;  ///< recordings that could not be read
 };
 
-/// Severity from which each fault with signatures would have raised an alarm; null for a fault without any alarm.
+/// Severity from which each fault with signatures would have raised an alarm, as JSON; null if no severity would have.
 Json seenFromJson(const SeenFrom& seen_from);
 
 /// Writes a CSV file with a row for each window, unless the path is empty.
@@ -52,7 +52,7 @@ void printSummary(const std::vector<WindowResult>& windows);
 
 struct IndicatorsOptions : SignalOptions
 {
-  std::vector<std::string> models;  ///< recordings of the twin: none, or one for each recording
+  std::vector<std::string> models;  ///< recordings of the twin: none, or one for each recording of the joint
   std::string baseline;             ///< file of the reference; empty: the first windows become the reference
   std::string save_baseline;        ///< file that the learned reference is written to; empty: no file
   std::string out;                  ///< CSV file with a row for each window; empty: no file

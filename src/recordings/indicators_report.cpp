@@ -80,8 +80,8 @@ Json byIndicator(const Value& value)
   return json;
 }
 
-/// Four kinds of numbers for each indicator: sound value, difference from the sound value, the indicator's own
-/// variance, and its loadings on the common causes. Null if the indicator is not compared.
+/// For each indicator: sound value, difference from the sound value, variance without the part from common causes, and
+/// loadings on these causes (WindowResidual). Null if the assessment does not compare the indicator.
 Json residualJson(const WindowResult& window)
 {
   return byIndicator(
@@ -94,12 +94,12 @@ Json residualJson(const WindowResult& window)
       });
 }
 
-/// The indicator with the largest score, and the difference between its mean over recent windows and its reference.
+/// The indicator with the largest score, and the difference of its mean over recent windows from its reference.
 struct Strongest
 {
   std::size_t indicator{};
   double score{};
-  double spreads{};  // difference over the indicator's spread [-]
+  double spreads{};  // difference over the indicator's spread in the reference [-]
   double percent{};  // difference over the reference [%]; NaN if the reference is smaller than the spread
 };
 

@@ -64,7 +64,7 @@ public:
   std::uint64_t dropped() const { return dropped_; }
 
 private:
-  /// Whether every other part has a row at `time` or later.
+  /// Whether every part after the first has a row at `time` or later.
   bool areReady(double time) const
   {
     return std::all_of(waiting_.begin() + 1, waiting_.end(),
@@ -197,7 +197,7 @@ private:
   {
     bool angle{};
     bool effort{};
-    bool together{};  // a message has both angle and effort
+    bool together{};  // whether one message has both angle and effort of the joint
     bool finite{};
   };
 
@@ -206,7 +206,7 @@ private:
   std::vector<Incomplete> incomplete_;
 };
 
-/// Text with the number of rows; empty if the number is 0.
+/// The number of rows, followed by `text`; empty if the number is 0.
 std::string counted(std::uint64_t rows, const std::string& text)
 {
   return rows == 0 ? "" : std::to_string(rows) + (rows == 1 ? " row " : " rows ") + text;

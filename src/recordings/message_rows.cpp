@@ -15,9 +15,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double CLOCK_STEP = 1.0;  // largest difference between the delays of neighbouring messages [s]
+constexpr double CLOCK_STEP = 1.0;  // largest difference of neighbouring messages in delay from stamp to recording [s]
 
-/// Whether the efforts of all `names` are exactly zero. For a single name, all of its values must be zero.
+/// Whether the efforts of all `names` are exactly zero. For a single name, its position and velocity must be zero too.
 bool isWithoutEffort(const sensor_msgs::JointState& message, const std::vector<std::string>& names)
 {
   const auto is_zero = [&](const std::vector<double>& values, const std::string& name)
@@ -38,12 +38,12 @@ bool isVoid(const MotionRow& row)
   return row.position == 0.0 && row.current == 0.0 && !(std::abs(row.recorded_velocity) > 0.0);
 }
 
-/// Whether a joint's values, or the angles of all joints, changed to exactly zero, as from a source without values. A
-/// joint whose angle does not jump has come to rest at zero, perhaps without a load, like a wrist of a twin.
+/// Whether the values of a joint, or the angles of all joints, jump to exactly zero, as from a source without values.
+/// Without a jump, a joint has come to rest at an angle of zero, perhaps without a load, like a wrist of a twin.
 bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionRow>& rows)
 {
   constexpr std::size_t MANY = 3;
-  constexpr double JUMP = 0.002;  // least jump: the way of a joint that stops within 16 ms at 16 rad/s^2 [rad]
+  constexpr double JUMP = 0.002;  // least jump [rad]: a joint that brakes at 16 rad/s^2 moves so far in its last 16 ms
   const auto is_at_zero = [](const MotionRow& row) { return row.position == 0.0; };
   const auto all_at_zero = [&](const std::vector<MotionRow>& all)
   { return all.size() >= MANY && std::all_of(all.begin(), all.end(), is_at_zero); };
@@ -55,7 +55,7 @@ bool isVoidAfter(const std::vector<MotionRow>& before, const std::vector<MotionR
   return is_void;
 }
 
-/// Joints of a message without an effort, because it has fewer efforts than names. Motors are not counted as joints.
+/// Joints without an effort, if the message has fewer efforts than names. Motors are not counted as joints.
 std::vector<std::string> beyondEfforts(const sensor_msgs::JointState& message)
 {
   return message.effort.size() < message.name.size() ?
@@ -223,8 +223,8 @@ bool MessageRows::agree(const StampedRows& a, const StampedRows& b) const
   return agrees;
 }
 
-/// Whether the message shows which joints its efforts belong to. With fewer efforts than names it does not, unless the
-/// names without an effort are joints of another arm.
+/// Whether the message shows which joint an effort belongs to. For a single joint, a message with fewer efforts than
+/// names does so only if the names without an effort belong to another arm.
 bool MessageRows::tellsWhose(const sensor_msgs::JointState& message) const
 {
   const std::vector<std::string> beyond = beyondEfforts(message);

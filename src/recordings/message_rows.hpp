@@ -45,7 +45,7 @@ struct TopicLayout
 TopicLayout readLayout(RecordedMessages& recording, const MotionSource& source, const std::vector<std::string>& names);
 
 /// Makes rows from the messages that name one group of joints, and omits impossible rows. A row waits for the next row,
-/// which shows whether it is possible. A load with a stamp of its own is still added to the waiting row.
+/// which shows whether the waiting row is possible. A load whose stamp is not later is still added to the waiting row.
 class MessageRows
 {
 public:
@@ -86,8 +86,8 @@ private:
   std::vector<double> loads_;
   std::vector<TemperatureRecord> temperatures_;
   std::optional<StampedRows> waiting_;
-  std::optional<StampedRows> last_;  // the last row, also if it is impossible
-  std::uint64_t seen_{};             // number of rows; the first row has no other row to disagree with
+  std::optional<StampedRows> last_;  // the last row, even if it is impossible
+  std::uint64_t seen_{};             // number of rows so far; the first row has no earlier row to disagree with
   std::uint64_t corrupt_{};
   std::uint64_t without_time_{};
   std::uint64_t without_effort_{};

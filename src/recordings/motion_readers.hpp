@@ -20,11 +20,11 @@ namespace hjt
 {
 /// Converts the stamps of a recording's rows to times since its first row [s].
 ///
-/// A recording that was played in a loop has several rounds. A new round begins BETWEEN after the end of the last
-/// round, a gap that divides the recording. It begins if a stamp jumps back by more than BACK, or ahead by more than
-/// AHEAD, as after stamps of a clock that was not set. It also begins if more than MOST_BEHIND rows in order are
-/// earlier than a row before, as after a clock was set back by less than BACK. More than MOST_AHEAD jumps ahead mean
-/// that the stamps have another unit; then no round begins.
+/// A recording of a bag that was played in a loop has several rounds. The times of a new round begin BETWEEN after the
+/// last time of the round before, a gap that divides the recording. A round begins if a stamp jumps back by more than
+/// BACK, or ahead by more than AHEAD, as after stamps of a clock that was not set. A round also begins if more than
+/// MOST_BEHIND rows in order are earlier than a row before them, as after a clock was set back by less than BACK. More
+/// than MOST_AHEAD jumps ahead mean that the stamps have another unit; then a jump ahead begins no round.
 class RowTime
 {
 public:
@@ -93,8 +93,8 @@ public:
   std::string text() const
   {
     constexpr std::uint64_t FEWEST = 10;
-    constexpr std::uint64_t MOST = 5;    // least number of rows for one row that goes back
-    constexpr std::uint64_t COPIES = 9;  // largest number of copies of one row
+    constexpr std::uint64_t MOST = 5;    // least mean number of rows for each row that goes back
+    constexpr std::uint64_t COPIES = 9;  // largest mean number of rows with the same stamp
     if (rows_ < FEWEST)
     {
       return {};
@@ -122,9 +122,9 @@ private:
 
 /// Detects several sources that publish the same joints in turn.
 ///
-/// Sources differ by the names of their nodes, if the recording has these names. The angles show several sources if, in
-/// more than LEAST_SHARE of the moving rows, a row is far from its two neighbours, these are near to each other, and
-/// the row is near to another such row shortly before. A damaged row occurs only once, and noise is small.
+/// If the recording names the publishing nodes, nodes in turn show several sources. Angles show several sources if, in
+/// more than LEAST_SHARE of the moving rows, a row is far from its two neighbours, these neighbours are near to each
+/// other, and one of the last rows of this kind is near to the row. A damaged row occurs only once; noise is small.
 class SourceWatch
 {
 public:
@@ -137,7 +137,7 @@ public:
       last_publisher_ = publisher;
     }
     const double step = std::max(LEAST_STEP, LEAST_OF_RANGE * rangeWith(rows));
-    if (step > GROWN * counted_step_)  // the motion that was counted before was noise
+    if (step > GROWN * counted_step_)  // the motion that was counted so far was noise
     {
       counted_step_ = step;
       moves_ = returns_ = 0;
@@ -184,7 +184,7 @@ private:
   // Least distance between rows of two sources over the sum of the joints' ranges [-]. Angles may be in degrees.
   static constexpr double LEAST_OF_RANGE = 1e-3;
   static constexpr double GROWN = 5.0;
-  static constexpr double NEARER = 0.3;  // largest ratio of a near to a far distance [-]
+  static constexpr double NEARER = 0.3;  // largest distance that counts as near, over a far distance [-]
   static constexpr double LEAST_SHARE = 0.05;
   static constexpr std::uint64_t LEAST_RETURNS = 20;
 
@@ -198,7 +198,7 @@ private:
     return sum;
   }
 
-  /// Sum of the ranges of the joints' angles, including these rows.
+  /// Sum of the ranges of the joints' angles in all rows, including these rows.
   double rangeWith(const std::vector<MotionRow>& rows)
   {
     constexpr double NONE = std::numeric_limits<double>::infinity();
@@ -222,7 +222,7 @@ private:
   std::uint64_t jumps_{};
   std::vector<double> least_;  // least angle of each joint
   std::vector<double> most_;
-  double counted_step_{ LEAST_STEP };  // least distance that counted when the counting began [rad]
+  double counted_step_{ LEAST_STEP };  // least distance that counted as motion when the counting began [rad]
   std::uint64_t seen_{};
   std::uint64_t moves_{};
   std::uint64_t returns_{};
@@ -248,8 +248,8 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
 /// Remark on joints whose effort is never a number; empty if there are no such joints.
 std::string silentText(const std::vector<std::string>& joints);
 
-/// Remark on values that are not a number in many rows; empty if there are none. `missing` has the number of these rows
-/// for each name of a value.
+/// Remark on values that are not a number in many rows; empty if there are none. `missing`: number of these rows, by
+/// the name of the value.
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count);
 
 /// Whether the table has a load of the source's joint.

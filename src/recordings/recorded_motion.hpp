@@ -22,7 +22,7 @@ constexpr int NO_COLUMNS = -1;
 /// A recording, and which of its joints, topics and times to read.
 struct MotionSource
 {
-  std::string path;                      ///< a bag, .db3, .mcap or CSV file, or a directory of ROS 2
+  std::string path;                      ///< path of a bag, a .db3, .mcap or CSV file, or a directory of ROS 2
   RecordingFormat format{};              ///< format of the recording
   std::string joint;                     ///< name of the joint in the messages
   int csv_joint{};                       ///< number of the joint in the columns of a CSV file
@@ -30,7 +30,7 @@ struct MotionSource
   std::string load_topic;                ///< topic of the load, sensor_msgs/JointState with the load as effort [N.m]
   /// Current per torque of the motor [A/(N.m)], if the effort of NAME_motor in the messages is a torque, else 0.
   double current_per_motor_torque{};
-  /// Motor current per effort of the joint; the effort is a current [A] or a torque [N.m].
+  /// Motor current per effort of the joint: [-] if the effort is a current, [A/(N.m)] if the effort is a torque.
   double current_per_effort{ 1.0 };
   double time_scale{ 1.0 };  ///< factor by which the times of the recording are multiplied [-]
   /// Largest speed of each joint, which RowFilter uses to refuse angles [rad/s]. A missing entry stands for FASTEST.
@@ -70,7 +70,7 @@ struct MotionCount
 /// Counts and remarks from reading a recording, and counts of the rows after differentiation.
 struct MotionFindings : MotionCount
 {
-  std::uint64_t refused{};  ///< number of rows that were refused, because they are repeated or out of order
+  std::uint64_t refused{};  ///< number of rows that the differentiator refused, as repeated or out of order
   std::uint64_t gaps{};     ///< number of gaps longer than MotionDifferentiator::MAX_GAP
   bool has_load{};          ///< whether the recording contains the load
 };

@@ -28,7 +28,7 @@ namespace hjt
 {
 namespace
 {
-/// Detects times that are not in seconds, from rare samples and, if the motor's speed is recorded, from that speed.
+/// Detects times that are not in seconds: steps of RARE or more, or a motor speed that contradicts the motor angle.
 class SecondsCheck
 {
 public:
@@ -56,9 +56,9 @@ public:
   /// Clause on why the times are probably not in seconds; empty if they seem to be in seconds.
   std::string doubt() const
   {
-    constexpr double TURN = 2.0 * M_PI;  // least motion of the motor at which its speed is more than noise [rad]
-    // Least ratio of the angle that follows from speed and time to the recorded angle [-]. A wrong unit of the speed
-    // causes a smaller ratio, times in milliseconds a larger one.
+    constexpr double TURN = 2.0 * M_PI;  // least motion of the motor that is more than noise [rad]
+    // Least ratio of the motion that follows from speed and time to the motion of the recorded angle [-]. A wrong unit
+    // of the speed causes a smaller ratio, times in milliseconds cause a larger one.
     constexpr double FACTOR = 100.0;
     if (2 * rare_ > steps_)
     {
@@ -244,7 +244,7 @@ void readRun(const std::string& path, const SignalSource& source, const Take& ta
                                                          std::vector<std::string>{ named });
   if (columns.empty())
   {
-    columns = readRunColumns(path, { CHOICES[TIME].name });  // for the text of an error, which lists columns
+    columns = readRunColumns(path, { CHOICES[TIME].name });  // for an error text that lists the columns of the file
   }
   readColumns(path, std::move(columns), source, take);
 }

@@ -26,7 +26,7 @@ bool isRun(const std::string& recording)
   return std::filesystem::path(recording).extension() == ".h5";
 }
 
-/// Whether two configurations make the same windows. Parameters of reference and assessment do not affect windows.
+/// Whether two configurations give the same windows. Parameters of reference and assessment do not affect windows.
 bool makeSameWindows(Parameters one, const Parameters& other)
 {
   one.indicators.baseline_windows = other.indicators.baseline_windows;
@@ -46,7 +46,7 @@ std::optional<harmonic_joint_twin::Indicators> readMessage(const rosbag::Message
     const auto message = instance.instantiate<harmonic_joint_twin::Indicators>();
     return message ? std::make_optional(*message) : std::nullopt;
   }
-  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // with an empty list of errors at the end
+  std::vector<std::uint8_t> bytes(instance.size() + sizeof(std::uint32_t));  // an empty list of errors is appended
   ros::serialization::OStream out(bytes.data(), instance.size());
   instance.write(out);
   ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));

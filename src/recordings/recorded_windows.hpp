@@ -22,15 +22,15 @@ struct RecordingParameters
 /// Finds the parameters of a recording. @throws ParameterError that names the file or option, InputError.
 RecordingParameters recordingParameters(const SignalOptions& options, const std::string& recording);
 
-/// Windows that the file of a run holds. None if the file has no windows, or if the options change what windows depend
-/// on: the columns, or parameters other than those of reference and assessment.
+/// Windows that the file of a run holds. None if the file has no windows, or if the options name columns, a joint, a
+/// torque scale, or other parameters than the run's, except for those of reference and assessment.
 std::optional<std::vector<SignalIndicators>> windowsOfRun(const std::string& recording, const SignalOptions& options,
                                                           const RecordingParameters& parameters);
 
 /// Windows that a node published while the bag was recorded. Messages that repeat the last window are ignored.
 std::vector<SignalIndicators> publishedWindows(const std::string& path, const std::string& topic);
 
-/// The assessment in a recording that was judged or, if none was, that was nearest to being judged.
+/// The judged assessment of a recording or, if the recording has none, the one that was nearest to being judged.
 class ClosestAssessment
 {
 public:

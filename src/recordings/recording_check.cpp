@@ -59,7 +59,7 @@ CheckedContents contentsOf(const std::vector<std::vector<MotionRow>>& rows)
   return contents;
 }
 
-/// @throws InputError if all names are empty, or if all contain the name of a quantity.
+/// @throws InputError if all names of joints are empty, or if all end with the name of a quantity, such as position.
 void requireNames(const std::string& topic, const std::vector<std::string>& names)
 {
   const auto all = [&](const auto& is) { return !names.empty() && std::all_of(names.begin(), names.end(), is); };
@@ -198,7 +198,7 @@ std::vector<CheckedArm> armsOfConfiguration(const std::vector<fs::path>& files, 
   return arms;
 }
 
-/// The arm that the options name, one entry for each pair of prefix and suffix. `known`: shipped arms that fit.
+/// The arm that the options name, one entry for each pair of prefix and suffix. `known`: arms of the configuration.
 std::vector<CheckedArm> armsGiven(const std::vector<CheckedArm>& known, const RecordingOptions& options,
                                   const CheckedContents& contents)
 {
@@ -243,9 +243,9 @@ CheckedContents readCheckedContents(const MotionSource& source)
                          readMessageContents(source);
 }
 
-/// Finds the arm of the options or, without that option, the arms whose joints the recording names. There is one entry
-/// for each pair of prefix and suffix, and at least one entry; it has no arm if none fits. `ranked` is empty; `taken`
-/// is set only if the options name the arm. @throws InputError, ParameterError.
+/// Finds the arm of the options or, without that option, the arms whose joints the recording names. The result has one
+/// entry for each pair of prefix and suffix; if no arm fits, it has one entry without an arm. `ranked` is empty;
+/// `taken` is set only if the options name the arm. @throws InputError, ParameterError.
 std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedContents& contents)
 {
   const std::vector<fs::path> files = armFiles(configDirectory(options));
@@ -458,7 +458,7 @@ bool hasFinding(const CheckedArm& arm, const std::string& kind)
                      [&](const RecordingFinding& finding) { return finding.kind == kind; });
 }
 
-/// The factor, rounded to the fewest digits that its uncertainty allows.
+/// Text of the factor with the fewest digits at which rounding changes it by at most 1 % or three uncertainties.
 std::string plainFactor(const FittedFactor& factor)
 {
   int digits = 1;
@@ -470,7 +470,7 @@ std::string plainFactor(const FittedFactor& factor)
   return roundedText(factor.value, digits);
 }
 
-/// Reads the recording again with a change that may correct one of its findings, and stores the effect of the change.
+/// Reads the recording again with a change that may correct one of its findings. Stores the change and its effect.
 void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
 {
   RecordingOptions changed = options;
@@ -506,7 +506,7 @@ void tryRemedies(const RecordingOptions& options, CheckedArm& arm)
   readArm(changed, mended);
   remedy.before = arm.rest.share();
   remedy.after = mended.rest.share();
-  // Another time scale changes only the inertia, which may be a small part of the load.
+  // A change of the time scale changes only the torque of inertia, which may be a small part of the load.
   constexpr double NOT_WORSE = 1.05;
   const double bound = kind == "effort_unit" ? 1.0 : NOT_WORSE;
   const bool is_left = hasFinding(mended, kind) || (kind == "period" && hasFinding(mended, "stamps"));

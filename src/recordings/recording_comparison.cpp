@@ -169,8 +169,8 @@ Json verdictJson(const Verdict& verdict)
   return all;
 }
 
-/// Standard deviation of the friction by its scatter, as a share of the friction [-]. NaN if the friction was not
-/// judged; then it is no reference.
+/// Standard deviation of the joint's friction from its scatter, over the friction [-]. NaN if the friction was not
+/// judged, because such a friction is no reference.
 double frictionDeviation(const ComparedJoint& compared)
 {
   return compared.friction && compared.friction->isJudged() ? compared.friction->scatter :

@@ -16,7 +16,7 @@
 
 namespace hjt
 {
-/// Keeps every nth row of a stream of any length. Of a long stream it keeps MAX_ROWS / 2 to MAX_ROWS rows.
+/// Keeps every nth row of a stream. Of a long stream, n is such that MAX_ROWS / 2 to MAX_ROWS rows remain.
 template <class Row>
 class Decimated
 {
@@ -137,7 +137,7 @@ private:
     double residual;
   };
 
-  /// Amplitudes of the orders 1 to `highest` of the joint's turn. Each step turns a phasor by its angle.
+  /// Amplitudes of the orders 1 to `highest` of the joint's turn. From order to order, each phasor turns by its angle.
   static std::vector<double> amplitudes(const std::vector<Place>& places, int highest)
   {
     using Phasor = std::complex<double>;
@@ -213,8 +213,8 @@ private:
   const ArmRecording& recording_;
   const std::size_t joint_;
   const std::string directory_;
-  const std::string twin_topic_;                    // topic of a twin that was recorded beside the robot
-  std::optional<TableFile<JudgedWindow>> windows_;  // windows of the signals, for a report
+  const std::string twin_topic_;                    // topic of a twin that ran beside the robot
+  std::optional<TableFile<JudgedWindow>> windows_;  // table of the signals' windows; none without a report
   Decimated<ComparedRow> course_;
   ResidualSpectrum spectrum_;
 };

@@ -41,9 +41,9 @@ struct RecordingOptions : ConfigurationOptions
   Watch watch;
 };
 
-/// Adds the options of `check`, which needs no joint and finds the arm if no option names it.
+/// Adds the options of `check`, which judges without a named joint and finds the arm if no option names it.
 void addOptions(OptionTable& table, RecordingOptions& options);
-// Each of these functions adds a part of the options: the recording; joint, arm and reading; namespace of the twin.
+// The next three functions each add a part of the options: the recording; joint, arm and reading; the twin's namespace.
 void addRecordingOption(OptionTable& table, RecordingOptions& options);
 void addJointOptions(OptionTable& table, RecordingOptions& options);
 void addNamespaceOption(OptionTable& table, std::string& joint_namespace);

@@ -36,7 +36,7 @@ public:
 
   void add(const SignalSample& sample)
   {
-    constexpr double LONGEST = 1.0;  // least step that does not count as use [s]
+    constexpr double LONGEST = 1.0;  // shortest time step that does not count as use [s]
     const double seconds = last_ ? 1e-9 * static_cast<double>(sample.stamp - last_->stamp) : 0.0;
     const double speed = last_ ? std::abs(motorAngle(sample) - motorAngle(*last_)) / seconds : 0.0;
     const double torque = jointTorque(sample);
@@ -72,7 +72,7 @@ private:
   std::optional<SignalSample> last_;
 };
 
-/// The same use, scaled to last `hours` [h].
+/// The use `use`, scaled to a length of `hours` [h].
 UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters& life)
 {
   UsageHistory scaled(life);
@@ -84,7 +84,7 @@ UsageHistory lasting(const UsageHistory& use, double hours, const LifeParameters
   return scaled;
 }
 
-/// Begin of each bin of hours, and the probability that the drive reaches its end in that bin. The last bin is open.
+/// Begins of bins of remaining hours [h], and the probability of the drive's end in each bin. The last bin is open.
 Json densityJson(const RemainingHours& remaining)
 {
   std::vector<double> hours(RemainingHours::BINS);
@@ -96,7 +96,7 @@ Json densityJson(const RemainingHours& remaining)
            { "probability", std::vector<double>(remaining.probability.begin(), remaining.probability.end()) } };
 }
 
-/// Probability of each cause of the drive's end.
+/// Probability of each cause of the drive's end, as JSON.
 Json endJson(const RemainingHours& remaining)
 {
   Json json;
@@ -144,7 +144,7 @@ struct Condition
   ReadWear read;
 };
 
-/// Hours of use that the drive had when a recording was made [h].
+/// Hours of use of the drive when the recording with this number was made [h].
 double hoursOf(const RemainingOptions& options, std::size_t recording, const UsageHistory& use)
 {
   if (options.hours.empty())

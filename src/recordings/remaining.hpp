@@ -16,7 +16,7 @@ namespace hjt
 {
 struct RemainingOptions : SignalOptions
 {
-  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: the recordings' time.
+  /// Hours of use of the drive [h]: one number, or one for each recording, ascending. Empty: the recordings' duration.
   std::vector<double> hours;
   std::string baseline;  ///< file with the reference of the new drive; empty: nothing is assessed
   std::string duty;      ///< duty cycle of the use so far, in place of the recordings' use; empty: none
@@ -31,8 +31,8 @@ struct Remaining
   LifeEstimate estimate;
   std::optional<Assessment> assessment;  ///< latest assessment; none if nothing was assessed
   std::optional<WearReading> wear;       ///< last reading of the wear; none if the wear was not read
-  std::optional<SeenFrom> seen_from;     ///< severities that would have raised an alarm; none after an alarm
-  const char* parameters{};              ///< source of the parameters, as words for the report
+  std::optional<SeenFrom> seen_from;  ///< severities from which faults would have raised an alarm; none after an alarm
+  const char* parameters{};           ///< source of the parameters, as words for the report
 };
 
 /// Estimates from recordings how a joint is used, and how long a drive with this use lasts.

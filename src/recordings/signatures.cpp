@@ -18,7 +18,7 @@ namespace
 {
 constexpr std::array SEVERITIES{ 0.1, 0.16, 0.25, 0.4, 0.63, 1.0 };  // severities of the signatures
 
-/// A line of a fault that follows from kinematics for every motion. Its amplitude at severity 1 is an assumption.
+/// A line that a fault causes in every motion, at an order from kinematics. The amplitude at severity 1 is assumed.
 struct KinematicLine
 {
   Cause cause;
@@ -231,7 +231,7 @@ std::string SignatureRuns::text(const std::string& gear, const SignatureSet& bas
   std::vector<std::string> motions;  // name of the motion of each signature
   set.gear = gear;
   set.signatures.clear();
-  set.fitted.fill(true);  // the basis gives only the numbers of robots; the runs give all others
+  set.fitted.fill(true);  // the runs give all values except those of robots, which come from `basis`
   for (const FaultDescription& description : FAULT_DESCRIPTIONS)
   {
     for (const Motion& motion : motions_)

@@ -171,8 +171,8 @@ struct CurrentsSeen
     return std::none_of(is_silent.begin(), is_silent.end(), [](bool silent) { return silent; });
   }
 
-  /// Whether a row has a current other than zero, so that rows without currents are failed readings; false for one
-  /// joint.
+  /// Whether at least one row has a current other than zero; rows without currents are then failed readings. False for
+  /// one joint.
   bool has_any{};
   std::array<bool, COUNT>
       is_silent{};  ///< whether the joint's effort is never a number, while the efforts of other joints are numbers
@@ -317,7 +317,7 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
 
 std::string missingText(const std::map<std::string, std::uint64_t>& missing, const MotionCount& count)
 {
-  constexpr double NOTEWORTHY = 0.02;  // least share of all rows that a remark needs [-]
+  constexpr double NOTEWORTHY = 0.02;  // least share of affected rows that a remark needs [-]
   const auto all = static_cast<double>(count.rows + count.corrupt);
   std::vector<std::string> names;
   for (const auto& [name, rows] : missing)
