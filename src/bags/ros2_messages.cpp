@@ -86,7 +86,6 @@ struct EndStatement
 
 namespace fs = std::filesystem;
 
-/// The file's name as a URI for SQLite.
 std::string uriOf(const std::string& path)
 {
   std::string uri = "file:";

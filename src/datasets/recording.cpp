@@ -39,12 +39,12 @@ const std::vector<RunColumn>& driveColumns()
   using I = const Instant&;
   static const std::vector<RunColumn> COLUMNS{
     // Quantities that a robot's controller can measure.
-    { "motor_angle_encoder", "rad", "angle by the motor encoder", [](I i) { return i.encoders.motor_angle; } },
-    { "motor_velocity_encoder", "rad/s", "speed by the motor encoder over sensors.velocity_window",
+    { "motor_angle_encoder", "rad", "motor angle from its encoder", [](I i) { return i.encoders.motor_angle; } },
+    { "motor_velocity_encoder", "rad/s", "motor speed from its encoder over sensors.velocity_window",
       [](I i) { return i.encoders.motor_velocity; } },
-    { "output_angle_encoder", "rad", "unwrapped angle by the output encoder",
+    { "output_angle_encoder", "rad", "unwrapped output angle from its encoder",
       [](I i) { return i.encoders.output_angle; } },
-    { "output_velocity_encoder", "rad/s", "speed by the output encoder over sensors.velocity_window",
+    { "output_velocity_encoder", "rad/s", "output speed from its encoder over sensors.velocity_window",
       [](I i) { return i.encoders.output_velocity; } },
     { "motor_torque_reading", "N.m", "motor torque estimated from the current",
       [](I i) { return i.motor_torque_reading; } },
@@ -62,7 +62,7 @@ const std::vector<RunColumn>& driveColumns()
     { "wave_generator_torque", "N.m", "torque of the wave generator on the flexspline",
       [](I i) { return i.outputs.wave_generator_torque; } },
     { "joint_torque", "N.m", "torque of the mesh on the circular spline", [](I i) { return i.outputs.joint_torque; } },
-    { "friction_torque", "N.m", "torque at the motor that has the power of all friction",
+    { "friction_torque", "N.m", "torque at the motor whose power is that of all friction",
       [](I i) { return i.outputs.friction_torque; } },
     { "torsional_stiffness", "N.m/rad", "local stiffness with the wave generator locked",
       [](I i) { return i.outputs.torsional_stiffness; } },

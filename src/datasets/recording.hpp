@@ -50,7 +50,6 @@ struct RecordingGroup
   std::vector<const RunColumn*> columns;
 };
 
-/// Whether this build supports HDF5 files.
 bool hasHdf5();
 
 enum class RunFormat

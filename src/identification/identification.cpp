@@ -414,7 +414,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   result.values.push_back(
       { "temperature of the friction", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
         parameters.bearing.viscosity_slope, 0.0,
-        is_warmed ? "not identified; the configured slope of the oil is used" : "the recording has no temperature" });
+        is_warmed ? "not identified; the configured value is used" : "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",
                             parameters.cup.torsion_stiffness[0], parameters.cup.torsion_stiffness[0], 0.0,
                             "not identified; `joint_twin compare` measures it if both angles are recorded" });

@@ -135,8 +135,8 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   {
     if (share(i) > NARROWED)
     {
-      refusal_[i] =
-          "the motion reduces the prior standard deviation only to " + roundedText(100.0 * share(i), 2) + " %";
+      refusal_[i] = "the motion hardly shows this quantity: its standard deviation is still " +
+                    roundedText(100.0 * share(i), 2) + " % of the prior's";
       asked_[i] = false;
       values_[i] = start_[i];
       half_width_[i] = 0.0;

@@ -116,9 +116,9 @@ struct RippleRow
 };
 
 /// Fits the lines of TorqueRipple and the resonance of the load to RippleRow::torque by least squares, with less weight
-/// for outliers (Huber). A line whose interval is too wide is refused and zero. The largest speed of the fit is the lower
-/// of two: the speed that a share KNOWN of the rows does not exceed, and that at which a line of two cycles per turn of
-/// the motor has two rows per cycle. A line of four cycles is refused if it has fewer rows per cycle at this speed.
+/// for outliers (Huber). A line whose interval is too wide is refused and zero. Faster rows than the lower of two
+/// speeds are omitted: the speed that a share KNOWN of the rows does not exceed, and that at which a line of two cycles
+/// per turn of the motor has two rows per cycle. A line of four cycles is refused if it has fewer rows per cycle there.
 class RippleFit
 {
 public:

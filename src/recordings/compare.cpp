@@ -96,9 +96,10 @@ std::string groupText(const JointGroup& group, const std::vector<ComparedJoint>&
     return {};
   }
   return "The friction of " + lines[group.begin].name + " to " + lines[group.end - 1].name + " together is " +
-         fixedText(group.median, 2) + " times the expected friction. The reason is another " +
-         (std::abs(std::log(group.median)) < std::log(MOST) ? "temperature or lubricant of these joints" :
-                                                              "arm, gain or unit than given") +
+         fixedText(group.median, 2) + " times the expected friction. The reason is " +
+         (std::abs(std::log(group.median)) < std::log(MOST) ?
+              "another temperature or lubricant of these joints" :
+              "that arm, gain or unit of the currents is not the configured one") +
          ", not a fault of one joint. ";
 }
 
@@ -184,7 +185,8 @@ std::string textOf(const std::vector<ComparedJoint>& lines, const ArmFriction& a
   if (arm.median != 1.0)
   {
     text = "The friction of the whole arm is " + shortNumber(0.01 * std::round(100.0 * arm.median)) +
-           " times that of the reference. The reason is another temperature or gain, not a fault of one joint. ";
+           " times that of the reference. The reason is another temperature or gain than in the reference, "
+           "not a fault of one joint. ";
     if (arm.temperature)
     {
       text += "By the twin's law of friction, this factor means " + shortNumber(std::round(*arm.temperature)) +

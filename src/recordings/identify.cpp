@@ -378,7 +378,7 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
                                  { "payload.mass_half_width", "", found.mass_half_width },
                                  { "payload.moment", "", list(found.moment) },
                                  { "payload.moment_half_width", "", list(found.moment_half_width) },
-                                 { "", "payload by the currents", mass },
+                                 { "", "payload from the currents", mass },
                                  { "", "payload configured", found.configured.mass, "kg" } };
   if (found.differs() && found.isCarried())
   {
@@ -414,12 +414,14 @@ void addOptions(OptionTable& table, IdentifyOptions& options)
   addJointOptions(table, options);
   table.add("--out", options.out, "file for the overlay; for an arm, a directory of overlays").type("FILE.yaml|DIR");
   addSpan(table, "--train", options.train,
-          "from,to: part to identify from [s]; default: the first third, of an arm all");
-  addSpan(table, "--judge", options.judge, "from,to: part to test on [s]; default: the rest; not for an arm");
+          "from,to: part to identify from [s]; default: the first third; for an arm, the whole recording");
+  addSpan(table, "--judge", options.judge,
+          "from,to: part to test on [s]; default: the last two thirds; not for an arm");
   table
-      .add("--folds", options.folds,
-           "divides the part to identify from into this many pieces and predicts each from the others; for an arm 5 by "
-           "default")
+      .add(
+          "--folds", options.folds,
+          "number of pieces of the part to identify from; a fit to the others predicts each piece; default for an arm: "
+          "5")
       .range(2, 100);
 }
 

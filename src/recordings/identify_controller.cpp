@@ -193,9 +193,9 @@ Report reportOf(const std::vector<IdentifiedController>& joints)
   using Joint = IdentifiedController;
   const std::vector<Column<Joint>> columns{
     { "joint", &Joint::name, "joint" },
-    { "angle_current", [](const Joint& joint) { return joint.fit.angle_current; }, "current by angle [A/rad]" },
+    { "angle_current", [](const Joint& joint) { return joint.fit.angle_current; }, "current per angle error [A/rad]" },
     { "angle_half_width", [](const Joint& joint) { return joint.fit.angle_half_width; }, "+-" },
-    { "speed_current", [](const Joint& joint) { return joint.fit.speed_current; }, "by speed [A.s/rad]" },
+    { "speed_current", [](const Joint& joint) { return joint.fit.speed_current; }, "per speed error [A.s/rad]" },
     { "speed_half_width", [](const Joint& joint) { return joint.fit.speed_half_width; }, "+-" },
     { "lag", [](const Joint& joint) { return joint.fit.lag; }, "lag [s]" },
     { "explained", [](const Joint& joint) { return joint.fit.explained; }, "explained" },

@@ -53,14 +53,14 @@ void noticeSteps(std::vector<float> steps, const std::string& recording, const W
   if (gaps > 0)
   {
     watch.notice(recording + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
-                 " between samples, the longest " + shortNumber(longest) + " s where " + shortNumber(1e3 * usual) +
-                 " ms are usual: the indicators of these windows are wrong");
+                 " between samples, the longest " + shortNumber(longest) + " s, where a step of " +
+                 shortNumber(1e3 * usual) + " ms is usual; the indicators of windows with a gap are wrong");
   }
   if (jitter > JITTER * usual)
   {
-    watch.notice(recording + ": samples come " + shortNumber(std::round(1e5 * jitter) / 100.0) +
-                 " ms rms off even steps of " + shortNumber(1e3 * usual) +
-                 " ms: give stamps of the measurement, not of the reception");
+    watch.notice(recording + ": steps between samples differ by " + shortNumber(std::round(1e5 * jitter) / 100.0) +
+                 " ms rms from the usual " + shortNumber(1e3 * usual) +
+                 " ms; give stamps of the measurement, not of the reception");
   }
 }
 
@@ -90,8 +90,9 @@ std::vector<SignalIndicators> readWindows(const std::string& recording, const Si
   noticeSteps(std::move(steps), recording, watch);
   if (monitor.refused() > 0)
   {
-    watch.notice(recording + ": " + std::to_string(monitor.refused()) +
-                 " samples were ignored, which have no angle, no torque or no later time than the sample before");
+    watch.notice(
+        recording + ": " + std::to_string(monitor.refused()) +
+        " samples were ignored, because they have no angle, no torque or no later time than the sample before");
   }
   return windows;
 }
@@ -266,8 +267,8 @@ void addOptions(OptionTable& table, IndicatorsOptions& options)
       .type("FILE.yaml");
   table
       .flag("--carry", options.carry,
-            "carry a reference over from another motion to and fro, best a check-up, by the recordings of "
-            "--model")
+            "the reference is from another motion to and fro, best a check-up; the program subtracts the indicators "
+            "of --model from it too")
       .needs("--baseline")
       .needs("--model");
   table.add("--save-baseline", options.save_baseline, "file for the learned reference").type("FILE.yaml");

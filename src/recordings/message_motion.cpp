@@ -185,7 +185,7 @@ public:
                        "; joints found: " + (found.empty() ? "none" : joined(found)) + why;
     for (const JointAffixes& affixes : findAffixes(joints_, names_))
     {
-      text += affixes.empty() ? "" : "; given" + optionsOf(affixes) + " they are found";
+      text += affixes.empty() ? "" : "; with" + optionsOf(affixes) + " the joints are found";
     }
     return text;
   }
@@ -339,15 +339,14 @@ private:
     count_.corrupt += side_by_side_.dropped() + without_effort;
     count_.remark(recording_.remark());
     count_.remark(counted(without_time, "without a time were skipped, because their stamp is 0"));
-    count_.remark(
-        counted(without_effort, "with effort 0 were skipped: a second source gives no values, or the source had none"));
+    count_.remark(counted(without_effort, "with effort 0 were skipped, because their source had no values"));
     count_.remark(silentText({ layout_.silent.begin(), layout_.silent.end() }));
     count_.remark(missingText(missing, count_));
     remarkOnRounds(angles, time_.rounds(), count_);
     if (parts_.size() > 1)
     {
       count_.remark("the joints come in " + std::to_string(parts_.size()) +
-                    " messages: their rows are interpolated linearly to the same times");
+                    " messages, whose values are interpolated linearly to the same times");
     }
   }
 

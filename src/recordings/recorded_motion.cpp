@@ -66,7 +66,7 @@ MotionCount readMotion(const MotionSource& source, const std::vector<std::string
                            "they repeat the values of the row before while the joints move (held by a driver, or a "
                            "recorder was stuck)"));
   count.remark(leftOutText(count.left_out.bunched,
-                           "their stamps come in bunches, within a quarter of the mean step after the last"));
+                           "their stamps come in bunches, within a quarter of the mean step after the row before"));
   return count;
 }
 }  // namespace hjt

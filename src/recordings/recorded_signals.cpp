@@ -62,11 +62,11 @@ public:
     constexpr double FACTOR = 100.0;
     if (2 * rare_ > steps_)
     {
-      return "most samples come " + numberText(RARE) + " s apart or more";
+      return "most samples are " + numberText(RARE) + " s apart or more";
     }
     return most_ - least_ > TURN && by_angle_ > 0.0 && by_speed_ > FACTOR * by_angle_ ?
-               "by speed and time, the motor turns " + fixedText(by_speed_ / by_angle_, 0) +
-                   " times as far as by its recorded angle" :
+               "the recorded motor speed gives " + fixedText(by_speed_ / by_angle_, 0) +
+                   " times the motion of the recorded motor angle" :
                "";
   }
 
@@ -410,7 +410,7 @@ void readSignals(const std::string& recording, const SignalOptions& options, con
                                      read(recording, source, check);
   if (const std::string doubt = seconds.doubt(); !doubt.empty())
   {
-    throw InputError(recording + ": " + doubt + ": its times must be in seconds");
+    throw InputError(recording + ": " + doubt + ", so the times are probably not in seconds");
   }
 }
 

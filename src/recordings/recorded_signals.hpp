@@ -37,7 +37,6 @@ struct SignalOptions : ConfigurationOptions
 
 void addSignalOptions(OptionTable& table, SignalOptions& options);
 
-/// Whether the options name a column.
 bool namesColumn(const SignalOptions& options);
 /// Sets the column of a signal. `signal` is the name of the tool's option without dashes: "motor_torque" for
 /// --motor-torque. @throws InputError that lists the signals.

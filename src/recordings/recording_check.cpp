@@ -365,7 +365,7 @@ Misfit misfitOfParts(const CheckedArm& arm)
     return arm.found.misfit;
   }
   return { Reason::LOAD_UNKNOWN,
-           "the load of an arm depends on the angles of all its joints, and there is no angle or no effort of " +
+           "the load of an arm depends on the angles of all its joints, but the recording has no angle or effort of " +
                joined(arm.missing) };
 }
 

@@ -252,8 +252,8 @@ void addOptions(OptionTable& table, RemainingOptions& options)
 {
   addSignalOptions(table, options);
   table.add("--hours", options.hours,
-            "hours that the drive was used like in the recordings [h]; default: their duration. A list, "
-            "ascending: the hours at which each recording was made");
+            "hours that the drive was used as in the recordings [h]; default: duration of the recordings. A list, "
+            "ascending: hours of use at which each recording was made");
   table
       .add("--baseline", options.baseline,
            "reference of the new drive, from `indicators`, to assess the recordings and read the wear")
@@ -330,11 +330,11 @@ Report reportOf(const Remaining& found)
   std::vector<ReportLine> lines{
     { "hours", "hours of use so far", estimate.hours, "h" },
     { "turns", "turns of the motor so far", estimate.turns },
-    { "remaining_q10", "remaining hours that 90 % of such drives reach", remaining.quantile[1], "h" },
-    { "remaining_q50", "remaining hours that 50 % of such drives reach", remaining.quantile[2], "h" },
-    { "remaining_q90", "remaining hours that 10 % of such drives reach", remaining.quantile[3], "h" },
+    { "remaining_q10", "remaining hours that 90 % of drives with this use reach", remaining.quantile[1], "h" },
+    { "remaining_q50", "remaining hours that 50 % of drives with this use reach", remaining.quantile[2], "h" },
+    { "remaining_q90", "remaining hours that 10 % of drives with this use reach", remaining.quantile[3], "h" },
     { "nearest", "nearest limit of the nominal drive", nameOf(estimate.nearest()) },
-    { "used", "used of it", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
+    { "used", "used share of this limit", 100.0 * estimate.usedOf(estimate.nearest()), "%" },
     { "parameters", "source of the parameters", found.parameters },
   };
   if (found.assessment)

@@ -358,7 +358,7 @@ class Errors(Recordings):
                 (lambda: hjt.identify("a.csv", joint="elbow", train=(1.0,)), "must be a pair of num"),
                 (lambda: hjt.indicators("a.csv", columns=["time"]), "columns = ['time'] must be a map"),
                 (lambda: hjt.indicators(SILENT, torque_scale=0.0), "torque_scale = 0"),
-                (lambda: hjt.indicators(SILENT), "3 samples were ignored, which have no angle"),
+                (lambda: hjt.indicators(SILENT), "3 samples were ignored, because they have no angle"),
                 (lambda: hjt.Arm("ur5", "abc"), "start = 'abc' must be a list of numbers"),
                 (lambda: hjt.indicators("a.txt"), "'a.txt' must end in"),
                 (lambda: hjt.arm({"time": [0.0], "position": [0.0]}, "ur5"),

@@ -270,9 +270,9 @@ class DataSets(unittest.TestCase):
         samples = hjt.load("sound", "signals")
         frame = samples[samples.run == 0]
         frame = frame.assign(motor_velocity_encoder=np.gradient(frame.motor_angle_encoder, frame.time))
-        for factor, text in ((1e3, "most samples come 0.5 s apart or more"), (200.0, "the motor turns 200.* as far")):
+        for factor, text in ((1e3, "most samples are 0.5 s apart or more"), (200.0, "motor speed gives 200.* times")):
             for function in (hjt.indicators, hjt.remaining):
-                with self.assertRaisesRegex(hjt.InputError, rf"recordings\[0\]: .*{text}.*: its times must be in sec"):
+                with self.assertRaisesRegex(hjt.InputError, rf"recordings\[0\]: .*{text}.*, so the times are"):
                     function(frame.assign(time=factor * frame.time))
 
     def test_faults_of_brake_sensors_and_motor_grow_from_their_onset(self):

@@ -83,8 +83,9 @@ class Indicators(tool.ToolTest):
         said = [self.succeed("indicators", name, *COLUMNS, *SMALL_WINDOWS, "--json").stderr
                 for name in ("even.csv", "gap.csv", "jitter.csv")]
         self.assertEqual(said[0], "")
-        self.assertIn("gap.csv: 1 gap between samples, the longest 1.002 s where 2 ms are usual", said[1])
-        self.assertRegex(said[2], r"jitter.csv: samples come 0\.(1|2)\d* ms rms off even steps of (2|1\.99\d*) ms")
+        self.assertIn("gap.csv: 1 gap between samples, the longest 1.002 s, where a step of 2 ms is usual", said[1])
+        self.assertRegex(said[2], r"jitter.csv: steps between samples differ by 0\.(1|2)\d* ms rms from the usual "
+                                  r"(2|1\.99\d*) ms")
         self.assertNotIn("gaps", said[2])
 
     def test_a_reference_is_saved_and_given(self):
