@@ -232,7 +232,7 @@ private:
       for (Record message; messages.read(message);)
       {
         const unsigned char kind = message.kind();
-        // The index may not point at these records, because the rosbag library then reads on to later records.
+        // An index entry must not point at these records, because the rosbag library then reads on to later records.
         if (kind != rosbag::OP_CONNECTION && kind != rosbag::OP_MSG_DEF)
         {
           messages_.push_back(message.position);

@@ -14,7 +14,7 @@ namespace
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr char VERSION[] = "#ROSBAG V2.0\n";
-constexpr std::size_t FILE_HEADER_SIZE = 4096;  // with padding, because the header is written again at the end [byte]
+constexpr std::size_t FILE_HEADER_SIZE = 4096;  // with padding; `close` writes the header again in this space [byte]
 constexpr std::size_t CHUNK_THRESHOLD = 768 * 1024;  // the message that exceeds this size ends a chunk [byte]
 
 enum class Operation : std::uint8_t

@@ -17,7 +17,7 @@ constexpr std::uint64_t textHash(std::string_view text, std::uint64_t hash = 146
   return hash;
 }
 
-/// The build computes these hashes from source code, compiler and its options (cmake/source_hash.cmake). A stored file
+/// The build computes both hashes from source code, compiler and its options (cmake/source_hash.cmake). A stored file
 /// contains the hash of the code that made the file.
 const char* surfaceSourceHash();  ///< hash of the code that computes response surfaces
 const char* sourceHash();         ///< hash of all files in src, include and msg

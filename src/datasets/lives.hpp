@@ -14,8 +14,8 @@
 
 namespace hjt
 {
-/// Divides the drives of a plan into drives for training and drives for the test, evenly by their numbers. The
-/// assignment of the first drives does not depend on the number of drives.
+/// Divides the drives of a plan into drives for training and drives for the test, which are spread evenly over the
+/// numbers of the drives. Whether a drive is for the test does not depend on how many drives the plan has.
 class DriveSplit
 {
 public:

@@ -38,7 +38,7 @@ ConfigurationOptions withOverlays(const PlanNode& root, const std::string& direc
 }
 
 constexpr const char* NOISE_SEED = "sensors.noise_seed";
-constexpr const char* LIVES_SET = "set.";  // prefix of the values that are drawn for each drive
+constexpr const char* LIVES_SET = "set.";  // prefix of the names of values that are drawn for each drive
 constexpr const char* DRIVES_SET = "drives.set.";
 
 void refuseGrids(const std::vector<const Variable*>& variables, const std::string& where)

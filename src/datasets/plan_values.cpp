@@ -295,7 +295,7 @@ PhiloxStream wordsOf(std::uint32_t seed, const std::string& name, std::uint64_t 
                       { seed ^ static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32) });
 }
 
-// Least probability of a normal distribution within its limits [-]. Values outside of the limits are drawn again.
+// Least probability that a drawn normal value is within its limits [-]. Values outside of the limits are drawn again.
 constexpr double MIN_SHARE = 1e-3;
 constexpr double MAX_WHOLE = 1e15;  // largest whole number that a double represents exactly
 

@@ -118,7 +118,7 @@ private:
   std::vector<ParameterValue> choices_;
 };
 
-/// All texts that a key can have in the runs. @throws InputError.
+/// All texts that the value of a key can have in the runs of the plan. @throws InputError.
 std::vector<std::string> textsOf(const PlanNode& map, const std::string& key);
 
 /// A random word that differs from run to run, as a seed for random quantities of the run.

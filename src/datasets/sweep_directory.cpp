@@ -25,7 +25,7 @@ namespace hjt
 namespace
 {
 namespace fs = std::filesystem;
-/// Version of the software and hash of its code. A data set from other code is not extended.
+/// Version of the software and hash of its code. A data set that other code made is not extended.
 std::string softwareVersion()
 {
   return std::string(HJT_VERSION "+") + sourceHash();
@@ -152,7 +152,7 @@ void SweepDirectory::open()
   OrderedJson document{ { "format", FORMAT }, { "version", softwareVersion() } };
   document.update(plan_.snapshot());
   const std::string text = document.dump(1) + '\n';
-  // A sweep writes the plan before any run, perhaps in another shard now. So this function checks the runs first.
+  // Another shard may write the plan and then a run just now. So this function looks for runs before the plan.
   const bool empty = fs::is_empty(path_ + "/runs");
   plan_file_ = ::open(name.c_str(), O_RDWR | O_CLOEXEC | (empty ? O_CREAT : 0), 0666);
   if (plan_file_ < 0)
@@ -297,7 +297,7 @@ std::string SweepDirectory::index() const
 
 void SweepDirectory::writeIndex() const
 {
-  // If another shard ends during the loop, the loop repeats. So the last writer of the index has read all runs.
+  // If another shard finishes a run during the loop, the loop repeats. So the last writer of the index read all runs.
   for (std::uint64_t seen = 0, now = finishedRuns(); seen != now; now = finishedRuns())
   {
     seen = now;

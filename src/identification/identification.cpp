@@ -233,7 +233,7 @@ Lacking lackingOf(const Parameters& parameters, const std::vector<MotionSample>&
   return lacking;
 }
 
-/// Fits presliding angle and lasting share to all rows, moving or at rest. All other values are fixed.
+/// Fits presliding angle and lasting share (of the friction, at rest) to all rows. All other values are fixed.
 class PreslidingFit
 {
 public:
@@ -446,8 +446,8 @@ void addError(const CurrentError& part, CurrentError& sum)
   sum.moving_rows += part.moving_rows;
 }
 
-/// Times that divide the motion into pieces of equal travel. Pieces of equal time would differ too much, because the
-/// joints of a check-up move one after the other.
+/// Times that divide the motion into pieces of equal travel. In pieces of equal time, the joint could be at rest,
+/// because the joints of a check-up move one after the other.
 std::vector<double> endsOfPieces(const std::vector<MotionSample>& samples, const Span& train, int pieces)
 {
   std::vector<double> ways(1, 0.0);  // travel up to each sample after the first [rad]

@@ -26,7 +26,7 @@ double correlationRows(const Eigen::VectorXd& residuals)
   {
     size *= 2;
   }
-  // Zeros follow the rows, because the transform would otherwise join the end of the rows to their begin.
+  // Zeros follow the rows, because the Fourier transform would otherwise join the end of the rows to the begin.
   Eigen::VectorXd padded = Eigen::VectorXd::Zero(size);
   padded.head(rows) = residuals;
   Eigen::FFT<double> transform;
@@ -70,7 +70,7 @@ Eigen::VectorXd leastCost(const Eigen::VectorXd& start, const Eigen::VectorXd& l
   {
     for (Eigen::Index i = 0; i < values.size(); ++i)
     {
-      // A value stays at its bound if the cost would decrease beyond the bound.
+      // A value stays at its bound if the cost would decrease only beyond the bound.
       if (here.gradient[i] > 0.0 ? values[i] <= lowest[i] : values[i] >= highest[i])
       {
         here.normal.row(i).setZero();
@@ -144,8 +144,8 @@ FrictionFit::FrictionFit(const Parameters& parameters, const FrictionMap& fricti
   }
   solve(look);
 
-  // The result contains this term, but the overlay does not. With the term, the prediction of wrist_3 in other motions
-  // of a recorded arm was 50 % worse.
+  // The result contains the Stribeck term, the overlay does not. With this term, the prediction of wrist_3 in other
+  // motions of a recorded arm was 50 % worse.
   const Values found = values_;
   const Values width = half_width_;
   asked_[STRIBECK] = true;

@@ -59,7 +59,7 @@ public:
 
   void fill(Stamp stamp, harmonic_joint_twin::ContactForces& message) noexcept;
   void fill(Stamp stamp, harmonic_joint_twin::Stress& message) noexcept;
-  /// The noise of the encoders is that of the sample of publish.encoders_rate whose period contains the stamp.
+  /// The encoders' noise depends only on the number of the period of publish.encoders_rate that contains the stamp.
   void fill(Stamp stamp, harmonic_joint_twin::Encoders& message) noexcept;
   /// Writes the values of one instant. The values that have a flag `*_valid` are not valid.
   void fill(Stamp stamp, harmonic_joint_twin::Health& message) noexcept;

@@ -257,7 +257,7 @@ std::string directoryOf(const ArmRecording& recording, const std::string& whole,
                                                whole;
 }
 
-/// Prepares the directories of the reports. The second reading of a recording overwrites the files of the first.
+/// Prepares the directories of the reports. The second reading of a recording overwrites files of the first reading.
 void prepareReports(const ComparisonOptions& options, const ArmRecording& recording)
 {
   if (recording.isArm())

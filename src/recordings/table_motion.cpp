@@ -101,7 +101,7 @@ public:
     return never;
   }
 
-  /// Counts the required columns without a number in the present row, in `missing`.
+  /// Adds 1 to the entry in `missing` of each required column without a number in the present row.
   void addMissing(std::map<std::string, std::uint64_t>& missing) const
   {
     for (std::size_t i = 0; i < column(VELOCITY, 0); ++i)
@@ -229,7 +229,7 @@ private:
       count_.start = stamp;
       first_ = table_.time();
     }
-    // In the first round, times are differences of the numbers in the file, without the rounding to nanoseconds.
+    // In the first round of RowTime, times are differences of the file's numbers, without rounding to nanoseconds.
     const double by_stamps = times_.at(stamp);
     const double time = times_.rounds() == 1 ? source_.time_scale * (table_.time() - first_) : by_stamps;
     order_.add(seconds);
@@ -361,7 +361,7 @@ MotionCount readTableMotion(const MotionSource& source, std::size_t joints, cons
 
 bool tableRecordsLoad(const MotionSource& source)
 {
-  const CsvRows rows(source.path);  // a missing file is reported by the reader
+  const CsvRows rows(source.path);  // the reader of the rows reports a missing file
   const std::string foreign = foreignTable(rows.header());
   if (!foreign.empty())
   {
@@ -395,7 +395,7 @@ MotionCount readArrayMotion(const MotionSource& source, std::size_t joints, cons
       continue;
     }
     const double by_stamps = times.at(std::llround(1e9 * seconds));
-    // In the first round, times are the numbers in the array, without the rounding to nanoseconds.
+    // In the first round of RowTime, times are the numbers in the array, without rounding to nanoseconds.
     const double time = times.rounds() == 1 ? seconds : by_stamps;
     order.add(seconds);
     count.duration = std::max(count.duration, time);

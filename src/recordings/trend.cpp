@@ -83,7 +83,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& given)
   return files;
 }
 
-/// Compares one recording. `progress` is called with the share of this recording that is done, 0 to 1.
+/// Compares one recording with the twin. `progress` is called with the read share of the recording, 0 to 1.
 DatedRecording readRecording(const ComparisonOptions& all, const std::string& path,
                              const std::function<void(double)>& progress)
 {
@@ -159,7 +159,7 @@ std::string changeText(const FrictionTrend& friction, const Trend& trend, const 
          std::to_string(friction.recordings) + " recordings.";
 }
 
-/// Logarithm of a joint's friction, including the common factor of the arm's joints; none if it is not judged.
+/// Logarithm of a joint's friction, including the common factor of the arm's joints; none if not judged.
 std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t joint)
 {
   if (!recording.isRead() || !recording.compared.joints[joint].friction)
@@ -171,7 +171,7 @@ std::optional<double> logarithmOf(const DatedRecording& recording, std::size_t j
   return factor > 0.0 ? std::make_optional(std::log(factor)) : std::nullopt;
 }
 
-/// Sets the frictions of the joints `begin` to `end` - 1, a group, in all recordings.
+/// Sets the frictions of the joints `begin` to `end` - 1, which are a group, in all recordings.
 void dateFrictions(std::vector<DatedRecording>& recordings, std::size_t begin, std::size_t end)
 {
   std::vector<std::vector<std::optional<double>>> logarithms(end - begin);

@@ -25,8 +25,8 @@ void addOptions(OptionTable& table, TrendOptions& options);
 struct DatedRecording
 {
   std::string path;
-  std::optional<Stamp> date;  ///< date of the first row [ns since 1970]; none if the stamps are not dates
-  double time{};              ///< time since the first recording [h]; without dates the place in the order, from 0
+  std::optional<Stamp> date;         ///< date of the first row [ns since 1970]; none if the stamps are not dates
+  double time{};                     ///< time since the first recording [h]; without dates, its number from 0
   std::vector<std::string> remarks;  ///< remarks from reading the recording
   std::string unread;                ///< why the recording could not be compared; empty if it was compared
   ComparedRecording compared;  ///< comparison without documents; has no joints if the recording could not be compared
@@ -51,7 +51,7 @@ struct Trend
 {
   bool is_arm{};
   bool has_dates{};  ///< whether all readable recordings have a date; if not, their order replaces the time
-  std::vector<DatedRecording> recordings;  ///< recordings by date, unreadable ones last; none if stopped
+  std::vector<DatedRecording> recordings;  ///< recordings by date, unreadable ones last; none after a stop
   std::vector<JointTrend> joints;          ///< trends of the joints, from the base on
   std::optional<std::size_t> latest;       ///< number of the last recording that was judged
   std::string level;
