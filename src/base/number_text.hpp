@@ -16,10 +16,10 @@ namespace hjt
 /// Shortest text from which the same number is read, in a form that rosparam reads as a number: 1.0e-5, 31000.0.
 std::string numberText(double value);
 
-/// Text of the number with this number of significant digits.
+/// Text of `value` with `digits` significant digits.
 std::string roundedText(double value, int digits);
 
-/// Text of the number with this number of digits after the decimal point.
+/// Text of `value` with `digits` digits after the decimal point.
 std::string fixedText(double value, int digits);
 
 /// Number in a text of decimal digits as in Python or C++ (5, -.5, 1e-06, 1.0E+3); none for another text.

@@ -29,7 +29,6 @@ std::string joined(const Texts& texts, const char* separator = ", ")
   return joined(texts, separator, [](const std::string& text) { return text; });
 }
 
-/// Whether `texts` contains `text`.
 inline bool holds(const std::vector<std::string>& texts, const std::string& text)
 {
   return std::find(texts.begin(), texts.end(), text) != texts.end();

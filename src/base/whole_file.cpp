@@ -177,7 +177,7 @@ void writeTextFile(const std::string& path, const std::string& text)
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  const fs::path there = fs::canonical(path, error);  // path after all links
+  const fs::path there = fs::canonical(path, error);  // path with all links resolved
   // The target of a link in /proc/self/fd may have no path.
   if (fs::exists(status) && (error || !fs::is_regular_file(status)))
   {

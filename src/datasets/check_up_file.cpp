@@ -22,8 +22,8 @@ namespace
 {
 constexpr double PERIOD = 0.008;  // sampling period of a UR controller [s]
 /// The following limits apply to the motion from the check-up of one joint to that of the next.
-constexpr double TRANSFER_SPEED = 0.35;         // [rad/s]
-constexpr double TRANSFER_ACCELERATION = 0.35;  // [rad/s^2]
+constexpr double TRANSFER_SPEED = 0.35;         // largest speed of a joint [rad/s]
+constexpr double TRANSFER_ACCELERATION = 0.35;  // largest acceleration of a joint [rad/s^2]
 constexpr const char* TOPIC = "/joint_trajectory";
 
 std::vector<ArmMove> movesOf(const ArmDescription& arm, const std::string& name)

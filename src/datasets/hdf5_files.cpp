@@ -540,7 +540,7 @@ private:
   std::string path_;
   std::string temporary_;
   Hdf5Handle file_;
-  Stamp from_{};  // only instants after this one are recorded
+  Stamp from_{};  // stamp after which instants are recorded [ns]
   Stamp begin_{};
   std::vector<RunFault> faults_;
   std::size_t joints_;

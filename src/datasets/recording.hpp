@@ -46,7 +46,7 @@ struct RecordingGroup
 {
   std::string name;
   double rate{};   // rate of the rows [Hz]
-  bool float32{};  // false: float64
+  bool float32{};  // whether a number has 32 bits in the file; false: 64 bits
   std::vector<const RunColumn*> columns;
 };
 

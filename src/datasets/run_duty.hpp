@@ -183,7 +183,7 @@ private:
   RunDuty duty_;
   double ratio_;
   double motor_inertia_;  // inertia of rotor and wave generator [kg.m^2]
-  double inertia_;        // inertia of motor and joint, as seen by the motor [kg.m^2]
+  double inertia_;        // inertia of motor and joint, referred to the motor's shaft [kg.m^2]
   double last_load_{};
   double last_time_{};
   double angle_reference_{};  // reference of the joint's angle [rad]

@@ -74,7 +74,7 @@ public:
   /// Longest time over which successive rows are averaged to one row of the fit [s].
   static constexpr double BLOCK = 0.1;
 
-  /// `look` is called as in `identify`. @throws InputError if the joint hardly moves.
+  /// `look` is called regularly, as by `identify`. @throws InputError if the joint hardly moves.
   FrictionFit(const Parameters& parameters, const FrictionMap& friction, const std::vector<MotionSample>& samples,
               const std::function<void()>& look);
 
@@ -139,7 +139,8 @@ public:
   void store(TelemetryParameters& parameters) const;  ///< stores lines, resonance, damping and lag
 
 private:
-  static constexpr std::size_t RESONANCE = 2 * TorqueRipple::LINES;  // index of the resonance, after the lines
+  static constexpr std::size_t RESONANCE =
+      2 * TorqueRipple::LINES;  // index of the resonance in Values, after the lines
   static constexpr std::size_t VALUES = RESONANCE + 3;
   using Values = Eigen::Matrix<double, VALUES, 1>;
 

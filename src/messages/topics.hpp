@@ -3,7 +3,6 @@
 
 namespace hjt
 {
-/// Default namespace of the node.
 constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
 
 /// Names of the twin's topics, relative to the private namespace of the node, for live topics and for bags. Names that

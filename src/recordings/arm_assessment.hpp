@@ -83,7 +83,7 @@ struct AssessmentSettings
   /// Makes the joint with this number, once for each reading of the recording. Null: a plain AssessedJoint is made.
   std::function<std::unique_ptr<AssessedJoint>(std::size_t)> make_joint;
   bool beside_controller{ true };  ///< whether the friction that the controller expects may be the reference
-  /// Whether the joints get no verdict if another shipped arm explains the recording clearly better than this arm.
+  /// Whether the joints get no verdict if another shipped arm explains the recording clearly better than the given arm.
   bool looks_for_arm{ true };
   bool gives_notice{};  ///< whether the user gets notices of defects of the recording
 };

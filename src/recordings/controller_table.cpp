@@ -103,7 +103,7 @@ bool isAtRest(const std::array<double, COLUMNS>& row)
 double agreedRatio(std::vector<double>& ratios, std::size_t rows)
 {
   constexpr std::size_t LEAST = 10;
-  constexpr std::size_t SHARE = 5;  // one ratio is enough for up to so many rows at rest
+  constexpr std::size_t SHARE = 5;  // largest number of rows at rest for each row with a ratio
   // Largest median deviation of the ratios over their median [-]; a controller computes both columns with one gain.
   constexpr double AGREE = 0.005;
   if (ratios.size() < std::max(LEAST, rows / SHARE))

@@ -286,7 +286,7 @@ private:
   Rms load_error_;
 };
 
-/// Sets the temperature of the joints' twins once a second, estimated from the joints' common factor of friction.
+/// Estimates the temperature from the common factor of the joints' friction, and sets that of the twins once a second.
 class CommonTemperature
 {
 public:

@@ -18,7 +18,6 @@
 
 namespace hjt
 {
-/// Rows of some joints at one instant.
 struct StampedRows
 {
   std::vector<MotionRow> rows;

@@ -31,7 +31,7 @@ public:
   /// Jump back that begins a round; a row that jumps back by less is out of order [s].
   static constexpr double BACK = 1.0;
   static constexpr double AHEAD = 86400.0;  ///< jump ahead that begins a round [s]
-  static constexpr double BETWEEN = 1.0;    ///< time from one round to the next [s]
+  static constexpr double BETWEEN = 1.0;    ///< time from the end of a round to the next [s]
   static constexpr std::uint64_t MOST_AHEAD = 10;
   static constexpr std::uint64_t MOST_BEHIND = 10;
 
@@ -228,13 +228,13 @@ private:
   std::uint64_t returns_{};
 };
 
-// Each of these functions reads one kind of recording for readMotion. The times are as recorded, unless stated.
+// Each of the next three functions reads one kind of recording for readMotion. Times of messages are not scaled.
 
 /// Reads messages. `visit` gets one row for each of `names` at a time; all of these rows have the same time.
 MotionCount readMessageMotion(const MotionSource& source, const std::vector<std::string>& names,
                               const VisitMotionRows& visit, const std::function<void(double)>& progress);
 
-/// Reads a table with a controller's columns. If `joints` is 1, reads only joint MotionSource::csv_joint, else all six.
+/// Reads a controller's table. If `joints` is 1, reads only MotionSource::csv_joint, else all six. Scales the times.
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,
                             const std::function<void(double)>& progress);
 

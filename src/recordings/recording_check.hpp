@@ -84,7 +84,7 @@ struct RecordingCheck
 };
 
 /// Reads the recording with every arm whose joints it names, and judges the joints as `joint_twin compare` does. The
-/// arm is that of the options or else the best one. Remedies are tried in memory. @throws InputError, ParameterError.
+/// arm is that of the options or, without one, the best one. No file is changed. @throws InputError, ParameterError.
 RecordingCheck checkRecording(const RecordingOptions& options);
 
 /// Commands to run next, complete with all options of this check. Empty for a recording in memory.

@@ -33,7 +33,7 @@ struct RecordingOptions : ConfigurationOptions
   JointAffixes affixes;                              ///< prefix and suffix of an arm's joint names in the messages
   double time_scale{ 1.0 };                          ///< factor by which the times of the rows are multiplied [-]
   bool force{};                                      ///< whether existing files are overwritten
-  /// Recording in memory, or null: a row of each joint at each time, with currents in A. Times start at 0.
+  /// Recording in memory: a row of each joint at each time, with currents in A, from time 0 on. Null: a file is read.
   std::shared_ptr<const std::vector<std::vector<MotionRow>>> rows;
   bool rows_have_load{};
   /// What the recording states besides its rows: whether it has a load, gains and payload. Null: not yet read.

@@ -25,7 +25,7 @@ constexpr bool isStamp(Stamp stamp)
   return stamp >= -MAX_STAMP && stamp <= MAX_STAMP;
 }
 
-/// Converts a duration >= 0 [s] to a stamp difference [ns]. The result is at most MAX_STAMP_LENGTH, also if it is NaN.
+/// Converts a duration >= 0 [s] to a stamp difference [ns]. The result is at most MAX_STAMP_LENGTH, also for a NaN.
 inline Stamp toStampLength(double duration)
 {
   const double length = duration * 1e9 + 0.5;
