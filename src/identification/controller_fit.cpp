@@ -203,9 +203,9 @@ ControllerFit fitController(const std::vector<ControllerRow>& rows, double perio
   else if (const double sum = fit.angle_current / fit.speed_current;
            !(fit.position_half_width < std::min(WIDEST_RATIO * sum, sum - 1.0 / usual.integral_time)))
   {
-    fit.refusal = "the recording does not determine the position gain. Together with 1 / integral time it is " +
+    fit.refusal = "the recording does not determine the position gain: position gain + 1 / integral time is " +
                   roundedText(sum, 3) + " +- " + roundedText(fit.position_half_width, 3) +
-                  " 1/s, and 1 / integral time alone is " + roundedText(1.0 / usual.integral_time, 3);
+                  " 1/s, and 1 / integral time alone is " + roundedText(1.0 / usual.integral_time, 3) + " 1/s";
   }
   else
   {

@@ -58,8 +58,8 @@ std::string wrongStamps(const MotionCount& count)
     return {};
   }
   const std::string factor = roundedText(count.velocity_ratio, 3);
-  return "by the stamps, the angles change " + factor +
-         " times as fast as the recorded velocities say; with wrong stamps, all results are wrong" +
+  return "according to the stamps, the angles change " + factor +
+         " times as fast as the recorded velocities say; wrong stamps make all results wrong" +
          (count.velocity_ratio > 0.0 ? "; --time-scale " + factor + " makes stamps and velocities agree" : "");
 }
 }  // namespace

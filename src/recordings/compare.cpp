@@ -128,7 +128,7 @@ std::string departuresOf(const std::vector<ComparedJoint>& lines)
     }
     else if (!line.contact.empty())
     {
-      text += line.name + ": " + line.contact + " The verdict uses only the other rows. ";
+      text += line.name + ": " + line.contact + " The verdict uses only the rows without this contact. ";
     }
   }
   text += judged && !departs ? "No joint differs from a sound joint. " : "";

@@ -76,7 +76,7 @@ void requireNames(const std::string& topic, const std::vector<std::string>& name
   if (all(names_quantity))
   {
     throw InputError(
-        topic + ": the names carry the quantity (" + names.front() +
+        topic + ": the names of the joints end with a quantity (" + names.front() +
         "); a message has to name each joint once, with its position, velocity and effort in these fields");
   }
 }

@@ -211,7 +211,7 @@ Condition readRecordings(const RemainingOptions& options, Assessor& assessor, Us
   }
   if (is_assessed && !any && !options.watch.stopped())
   {
-    throw InputError("nothing can be judged by " + options.baseline + ": " + why_not);
+    throw InputError("nothing can be judged with the reference " + options.baseline + ": " + why_not);
   }
   return condition;
 }
@@ -304,7 +304,7 @@ Remaining remaining(const RemainingOptions& options)
   if (options.lost_motion_limit && condition.read.readings.empty())
   {
     throw InputError("lost_motion_limit: no recording shows the lost motion beside " + options.baseline +
-                     ": the load must have both signs, in the reference too");
+                     ": the load must have both signs, in the recording and in the reference");
   }
   condition.read.lost_motion_limit = options.lost_motion_limit.value_or(HUGE_VAL);
   if (!options.use_record.empty())

@@ -145,11 +145,11 @@ void checkSignaturePlan(const Plan& plan)
     const RunSpec spec = checkedRun(plan, run);
     if (spec.faults.size() > 1)
     {
-      refuse(plan, spec, std::to_string(spec.faults.size()) + " faults; a signature needs one");
+      refuse(plan, spec, std::to_string(spec.faults.size()) + " faults; a run for a signature has at most one");
     }
     if (!spec.faults.empty() && (spec.faults[0].fault.onset > 0.0 || spec.faults[0].ramp > 0.0))
     {
-      refuse(plan, spec, "its fault must be there from the start on: onset: 0.0, no ramp");
+      refuse(plan, spec, "its fault must exist from the start: give onset: 0.0 and no ramp");
     }
   }
 }

@@ -305,7 +305,7 @@ void remarkOnRounds(const std::vector<UnfoldedAngle>& angles, std::uint64_t roun
   }
   if (folds > 0)
   {
-    count.remark("angles are folded into one turn: unwrapped, " + std::to_string(folds) + " jumps of 2 pi");
+    count.remark("angles are folded into one turn; " + std::to_string(folds) + " jumps of 2 pi were removed");
   }
   if (rounds > 1)
   {
@@ -336,7 +336,7 @@ std::string silentText(const std::vector<std::string>& joints)
 {
   return joints.empty() ? std::string() :
                           "the effort of " + joined(joints) +
-                              " is never a number: it counts as 0, and only the other joints are judged";
+                              " is never a number, so it counts as 0, and only the other joints are judged";
 }
 
 MotionCount readTableMotion(const MotionSource& source, std::size_t joints, const VisitMotionRows& visit,

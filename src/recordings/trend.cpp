@@ -225,8 +225,8 @@ JointTrend judgeJoint(const Trend& trend, std::size_t joint, const std::string& 
   else if (trend.has_dates && friction.span < DAY)
   {
     judged.friction.slope = std::nan("");
-    judged.text = "All recordings of its friction are of " + fixedText(friction.span, 1) +
-                  " h, less than a day; within a day, the friction changes by temperature.";
+    judged.text = "All recordings that show its friction are within " + fixedText(friction.span, 1) +
+                  " h. Within a day, friction changes with the temperature, so a trend needs a longer time.";
   }
   else
   {

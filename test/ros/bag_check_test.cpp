@@ -103,7 +103,7 @@ TEST(BagMotion, SaysHowManyJumpsOfAFoldedAngleItTookOut)
   source.speeds = { 30.0 };
   const MotionCount count = readMotion(
       source, { source.joint }, [](const std::vector<MotionRow>&) { return true; }, [](double) {});
-  EXPECT_THAT(count.remarks, ::testing::Contains("angles are folded into one turn: unwrapped, 3 jumps of 2 pi"));
+  EXPECT_THAT(count.remarks, ::testing::Contains("angles are folded into one turn; 3 jumps of 2 pi were removed"));
 }
 
 TEST(BagDamage, IsNamedWithItsPlace)

@@ -405,7 +405,7 @@ class Life(tool.ToolTest):
         self.assertEqual(sound["density"], sound_unread["density"])
         self.fail_with(1, ["lost_motion_limit: no recording shows the lost motion beside b.yaml"], "remaining", new,
                        *options, "--hours", 1e6, "--baseline", "b.yaml", "--lost-motion-limit", 5e-4)
-        self.fail_with(1, ["nothing can be judged by b.yaml: ", "slow.csv: no whole window of steady motion"],
+        self.fail_with(1, ["judged with the reference b.yaml: ", "slow.csv: no whole window of steady motion"],
                        "remaining", self.write("slow.csv", "t,theta,phi,amps\n0,0,0,1\n0.5,1,0.01,1\n"), *options,
                        "--baseline", "b.yaml")
         # Too few windows to be called sound; and two of one operating point are no reference.

@@ -397,7 +397,7 @@ class Rows(RecordingTest):
         self.fail_with(1, ["the joints have no names"], "check", write_bag(self.path("blank.bag"), messages))
         for _, state in messages:
             state.name = [name + "/position" for name in tool.JOINT_NAMES]
-        self.fail_with(1, ["the names carry the quantity"], "check", write_bag(self.path("split.bag"), messages))
+        self.fail_with(1, ["joints end with a quantity"], "check", write_bag(self.path("split.bag"), messages))
         for _, state in messages:
             state.name, state.position = tool.JOINT_NAMES, []
         done = self.run_tool("check", write_bag(self.path("empty.bag"), messages))
