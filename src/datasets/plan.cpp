@@ -386,7 +386,7 @@ std::vector<RunFault> Plan::faultsOf(const PlanNode& list, const PlanValues& val
 void Plan::takeDrive(const Block& block, const PlanValues& values, RunSpec& spec) const
 {
   spec.duty = duties_.read(*block.duty, values);
-  constexpr double LEAST_EASING = 0.1;  // [s]; a shorter easing excites vibration like a step
+  constexpr double LEAST_EASING = 0.1;  // least time of easing [s]; a shorter one excites vibration like a step
   spec.duty.easing = 0.5 * recording_.start >= LEAST_EASING ? 0.5 * recording_.start : 0.0;
   ParameterMap settings = settingsOf(values, spec.run);
   const bool given = lives_ || root_.find("classes") != nullptr;

@@ -205,7 +205,7 @@ void addOptions(OptionTable& table, SweepOptions& options)
       .add(
           "--shard", Option::Kind::TEXT,
           [&options](const std::string& text) { std::tie(options.shard, options.shards) = shardOf(text).value(); },
-          "only every N-th run, beginning with run I: the share of one of N processes")
+          "only the runs I, I + N, I + 2 N and so on, so that N processes can share the plan")
       .type("I/N")
       .check([](const std::string& text)
              { return shardOf(text) ? std::string() : "'" + text + "' must be I/N with 0 <= I < N"; });

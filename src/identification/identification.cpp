@@ -120,7 +120,7 @@ CurrentError simpleModelError(const std::vector<MotionSample>& train, const Judg
   return sum.result();
 }
 
-/// Stores the inertia, which cannot be negative: that of the motor in a recorded load, else the rotor's inertia.
+/// Stores the motor's inertia in the recorded load or, without a recorded load, the rotor's inertia; never below zero.
 void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& result)
 {
   constexpr double LEAST = 1e-9;
@@ -136,7 +136,7 @@ void storeInertia(const FrictionFit& fit, bool load_recorded, Identification& re
   };
   if (value < 0.0)
   {
-    // The interval lies below the configured inertia, so this inertia is wrong. The least possible one is then stored.
+    // If the interval lies below the configured inertia, the motion contradicts it, and the least inertia is stored.
     const bool contradicted = found.refusal.empty() && value + found.half_width < parameter && !load_recorded;
     found.value = contradicted ? LEAST : parameter;
     if (!contradicted)

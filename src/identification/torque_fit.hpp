@@ -139,8 +139,7 @@ public:
   void store(TelemetryParameters& parameters) const;  ///< stores lines, resonance, damping and lag
 
 private:
-  static constexpr std::size_t RESONANCE =
-      2 * TorqueRipple::LINES;  // index of the resonance in Values, after the lines
+  static constexpr std::size_t RESONANCE = 2 * TorqueRipple::LINES;  // index of the resonance in Values
   static constexpr std::size_t VALUES = RESONANCE + 3;
   using Values = Eigen::Matrix<double, VALUES, 1>;
 

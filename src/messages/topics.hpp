@@ -5,8 +5,8 @@ namespace hjt
 {
 constexpr const char* DEFAULT_NAMESPACE = "/joint_twin";
 
-/// Names of the twin's topics, relative to the private namespace of the node, for live topics and for bags. Names that
-/// only CHANNELS needs stand there.
+/// Names of the twin's topics, relative to the private namespace of the node, for live topics and for bags. A topic
+/// that only CHANNELS uses is named only there.
 namespace topics
 {
 constexpr const char* MOTOR_TORQUE_COMMAND = "motor_torque_command";  ///< input, std_msgs/Float64 [N.m]

@@ -87,7 +87,7 @@ private:
   PayloadCourse course_;
   std::vector<double> stated_gains_;
   std::vector<Parameters> parameters_;
-  std::vector<double> inertias_in_load_;  // motor inertia in a controller's torque of each joint [kg.m^2]
+  std::vector<double> inertias_in_load_;  // inertia of each motor in the controller's torque of its joint [kg.m^2]
   MotionSource source_;
   std::string payload_text_;  // remark on a stated payload; empty: the payload of the arm's file counts
   bool has_load_{};

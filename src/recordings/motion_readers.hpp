@@ -122,7 +122,7 @@ private:
 
 /// Detects several sources that publish the same joints in turn.
 ///
-/// If the recording names the publishing nodes, nodes in turn show several sources. Angles show several sources if, in
+/// If the recording names the publishing nodes, messages of two nodes in turn show several sources. So do angles if, in
 /// more than LEAST_SHARE of the moving rows, a row is far from its two neighbours, these neighbours are near to each
 /// other, and one of the last rows of this kind is near to the row. A damaged row occurs only once; noise is small.
 class SourceWatch
