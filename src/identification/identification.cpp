@@ -412,7 +412,7 @@ Identification identify(const Parameters& parameters, const std::vector<MotionSa
   const bool is_warmed = std::any_of(train.begin(), train.end(),
                                      [](const MotionSample& sample) { return std::isfinite(sample.temperature); });
   result.values.push_back(
-      { "temperature of the friction", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
+      { "change of friction with temperature", "bearing.viscosity_slope", "-", parameters.bearing.viscosity_slope,
         parameters.bearing.viscosity_slope, 0.0,
         is_warmed ? "not identified; the configured value is used" : "the recording has no temperature" });
   result.values.push_back({ "torsional stiffness", "cup.torsion_stiffness", "N.m/rad",

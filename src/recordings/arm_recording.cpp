@@ -34,7 +34,7 @@ Parameters parametersOf(const ArmJoint& joint, double gain, const RecordingOptio
   const LoadSource load = parameters.telemetry.load;
   if (load != LoadSource::TARGET_MOMENT && load != LoadSource::ARM)
   {
-    throw ParameterError("telemetry.load: the load of an arm is chosen by --load");
+    throw ParameterError("telemetry.load: for an arm, choose the load with --load");
   }
   return parameters;
 }

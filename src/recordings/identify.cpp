@@ -43,16 +43,17 @@ Sections identifiedSections(const Identification& found)
         value.name + " [" + value.unit + "]; 95 %: +-" + shortNumber(value.half_width) + ". Identified.");
     if (value.key == "mesh.friction_kinetic")
     {
-      add("mesh.friction_static", numberText(found.parameters.mesh.friction_static), "In proportion.");
+      add("mesh.friction_static", numberText(found.parameters.mesh.friction_static),
+          "In proportion to mesh.friction_kinetic.");
     }
   }
   const TelemetryParameters& telemetry = found.parameters.telemetry;
   for (const RippleLine& line : found.lines)
   {
     add(line.key, "[" + numberText(line.torque[0]) + ", " + numberText(line.torque[1]) + "]",
-        line.refusal.empty() ? "Ripple, " + shortNumber(line.order) + " per joint turn [N.m]; 95 %: +-" +
-                                   shortNumber(line.half_width) + ". Identified." :
-                               "Ripple, " + shortNumber(line.order) + " per joint turn [N.m]: " + line.refusal + ".");
+        "Ripple, " + shortNumber(line.order) + " cycles per joint turn [N.m]" +
+            (line.refusal.empty() ? "; 95 %: +-" + shortNumber(line.half_width) + ". Identified." :
+                                    ": " + line.refusal + "."));
   }
   add("telemetry.ripple_resonance", numberText(telemetry.ripple_resonance), "Resonance of the load [Hz].");
   add("telemetry.ripple_damping", numberText(telemetry.ripple_damping), "Damping ratio of the resonance [-].");
@@ -388,8 +389,8 @@ std::vector<ReportLine> linesOf(const IdentifiedPayload& found)
       centre += (axis > 0 ? ", " : "") + shortNumber(found.moment[axis] / found.mass) + " +- " +
                 shortNumber(found.moment_half_width[axis] / found.mass);
     }
-    lines.push_back({ "", "its centre in the frame of the tip", centre, "m" });
-    lines.push_back({ "", "if the arm carries it", "set payload in the arm's file and identify again" });
+    lines.push_back({ "", "centre of this payload in the frame of the tip", centre, "m" });
+    lines.push_back({ "", "if the arm carries this payload", "set it in the arm's file and identify again" });
   }
   return lines;
 }
