@@ -26,7 +26,7 @@
 
 namespace hjt
 {
-/// Lock of a file against other processes that use FileLock. It ends with this object or with the process.
+/// Lock of a file against other processes that use FileLock. The lock ends with this object or with the process.
 class FileLock
 {
 public:

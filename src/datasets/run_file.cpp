@@ -30,7 +30,7 @@ namespace hjt
 {
 namespace
 {
-/// Lock for opening and closing a bag, which search for plugins (compression, encryption) and are not thread-safe.
+/// Lock for opening and closing a bag. Both search for plugins (compression, encryption) and are not thread-safe.
 std::mutex g_opening;
 
 /// Writes a run. If this fails, the file is removed. The error therefore omits how to read an incomplete file.
@@ -150,7 +150,7 @@ private:
   std::vector<std::size_t> order_;  // index of the joint for each entry of the arm's states
   sensor_msgs::JointState states_;
   Stamp period_{};  // period of the arm's states [ns]
-  Stamp begin_{};   // stamp from which this period is counted [ns]
+  Stamp begin_{};   // stamp from which period_ is counted [ns]
   Stamp last_;
 };
 

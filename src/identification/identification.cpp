@@ -304,7 +304,7 @@ private:
       }
       else
       {
-        // These equations are those of Presliding::move.
+        // The following equations are those of Presliding::move.
         const double turn = ratio_ * (samples_[i].position - samples_[i - 1].position);
         const double end = std::copysign(1.0, turn);
         const double kept = std::exp((samples_[i - 1].time - samples_[i].time) / Presliding::RELAXATION);

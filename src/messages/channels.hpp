@@ -62,7 +62,7 @@ constexpr std::size_t CHANNEL_COUNT = std::tuple_size_v<decltype(CHANNELS)>;
 /// offline, whenever the program was started.
 ///
 /// A sink is constructed from (context, channel, first message). Its members are `bool isWanted()` and `write(fill)`.
-/// The latter calls `bool fill(Message&)` and drops the message if `fill` returns false.
+/// `write` calls `bool fill(Message&)` and drops the message if `fill` returns false.
 template <template <class> class Sink>
 class Outputs
 {

@@ -79,7 +79,7 @@ private:
     }
   }
 
-  /// Interpolates the rows of `part` linearly at the time of `base`. Returns false if the rows are too far apart.
+  /// Interpolates the rows of `part` linearly at the time of `base`. Returns false in a gap or outside of the rows.
   bool placeAt(std::size_t part, const MotionRow& base)
   {
     auto& rows = waiting_[part];

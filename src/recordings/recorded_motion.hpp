@@ -52,8 +52,8 @@ struct MotionCount
   double least_delay{};     ///< shortest time from the stamp of a message to its recording [s]
   double most_delay{};      ///< longest time from the stamp of a message to its recording [s]
   std::uint64_t refused_temperatures{};  ///< number of temperatures that are not finite or impossible
-  /// Factor between the first joint's angle rates, by the stamps, and its recorded velocities: 1 if both agree [-]. NaN
-  /// if it is not known.
+  /// Ratio of the first joint's angle rates, computed with the stamps, to its recorded velocities: 1 if both agree [-].
+  /// NaN if the ratio is not known.
   double velocity_ratio{ std::numeric_limits<double>::quiet_NaN() };
   std::vector<std::string> remarks;  ///< clauses on repaired or omitted data, without a full stop
   Misfit misfit;                     ///< why no joint can be judged; empty if joints can be judged
@@ -99,7 +99,7 @@ using VisitMotionRows = std::function<bool(const std::vector<MotionRow>& rows)>;
 /// same joint, `misfit` says so. A row without all joints is omitted and counted as corrupt. If no message holds all
 /// joints, values of the other joints are interpolated to the times of the first joint's rows.
 /// The temperature of a row is the latest sensor_msgs/Temperature message of any topic whose frame_id is the joint,
-/// unless the message is too old (TemperatureRecord).
+/// unless the message is older than TemperatureRecord allows.
 /// Table: columns timestamp, actual_q_N, actual_current_N and target_moment_N, as `joint_twin import` reads them, and
 /// joint_temperatures_N [degC]; for an arm, N is 0 to 5 in the order of the names.
 /// `progress` is called with the read share of the recording, 0 to 1.

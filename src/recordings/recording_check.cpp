@@ -271,7 +271,7 @@ std::vector<CheckedArm> findArms(const RecordingOptions& options, const CheckedC
   return arms;
 }
 
-/// Default arm: the joints are judged with it if no arm explains the currents clearly better than the others.
+/// Arm that the joints are judged with if no arm explains the currents clearly better than the other arms.
 constexpr const char* DEFAULT_ARM = "ur5";
 
 RecordingOptions optionsFor(const RecordingOptions& options, const CheckedArm& arm, const std::string& name)
