@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-// Least number of windows in a mean, which can then omit an outlier; number of successive means that change the level.
+// Least number of windows in a mean, so that the mean can omit an outlier. So many successive means change the level.
 constexpr int LEAST_EVIDENCE = 3;
 }  // namespace
 
@@ -85,7 +85,7 @@ void Assessor::begin(const SignalIndicators& indicators, const SignalIndicators*
   }
 }
 
-/// Judges a window, without the search for its cause.
+/// Judges a window. The function starts the search for the cause of an alarm and leaves the rest to `advance`.
 void Assessor::judge(const SignalIndicators& indicators, const SignalIndicators* model) noexcept
 {
   assessment_.stamp = indicators.stamp;
@@ -141,7 +141,7 @@ void Assessor::setState(AssessmentState state) noexcept
   assessment_.state = state;
   if (state == AssessmentState::ASSESSED)
   {
-    assessment_.windows_needed = 2 * least_windows_ - 1;  // windows in least_windows_ successive means
+    assessment_.windows_needed = 2 * least_windows_ - 1;  // number of windows in least_windows_ successive means
     const bool is_verdict =
         assessment_.level != HealthLevel::OK || assessment_.windows_here >= assessment_.windows_needed;
     assessment_.state = is_verdict ? state : AssessmentState::TOO_FEW_WINDOWS;
@@ -170,8 +170,8 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint&
   return factor > error_factor_ ? HealthLevel::ERROR : HealthLevel::WARN;
 }
 
-/// Changes the level after enough successive means agree. Windows of another class of operating points do not lower the
-/// level, because the fault may not show in that class.
+/// Changes the level when least_windows_ successive means of the last windows agree on a higher, or a lower, level. The
+/// level falls only by windows of the class of operating points that showed it, because other classes may hide a fault.
 void Assessor::updateLevel(HealthLevel level) noexcept
 {
   if (baseline_.residual().windows < least_windows_)

@@ -29,7 +29,7 @@ struct Evidence
   double score{};     ///< deviation of `value` from `expected` as a score, that is, as a normal deviate [-]
 };
 
-/// A possible cause of a deviation that is less probable than Assessment::cause.
+/// Possible cause of an alarm, less probable than Assessment::cause.
 struct Alternative
 {
   Cause cause{};
@@ -43,18 +43,18 @@ struct Assessment
 {
   static constexpr std::size_t MAX_EVIDENCE = 3;
   static constexpr std::size_t MAX_ALTERNATIVES = 3;
-  static constexpr double SET = 0.9;  ///< sum of probabilities at which the list of alternatives ends [-]
+  static constexpr double SET = 0.9;  ///< sum of the causes' probabilities at which the list of alternatives ends [-]
 
   std::int64_t stamp{};     ///< end of the last window [ns]
-  std::uint64_t windows{};  ///< number of completed windows
+  std::uint64_t windows{};  ///< number of windows completed since the start or the last reset
   AssessmentState state{};
-  int windows_here{};    ///< number of windows at the last operating point, compared or (while LEARNING) learned
-  int windows_needed{};  ///< number of windows that a verdict needs or, while LEARNING, the reference
+  int windows_here{};    ///< windows compared at the last operating point or, if none was, windows of its reference
+  int windows_needed{};  ///< windows that a verdict needs or, in LEARNING and NO_REFERENCE, that the reference needs
   HealthLevel level{};
   Cause cause{};                ///< most likely cause; NONE at level OK, or if no known fault explains the deviation
-  bool shows_play{};            ///< whether the lost motion was compared; it needs a load of both signs
-  Cause pattern{};              ///< cause whose pattern has the largest score; NONE if an indicator has a larger score
-  double confidence{};          ///< probability of the cause, 0 at level OK [-]
+  bool shows_play{};            ///< whether the lost motion was compared, which needs loads of both signs
+  Cause pattern{};              ///< cause with the largest pattern score; NONE if an indicator's score is larger
+  double confidence{};          ///< probability of `cause`; 0 at level OK [-]
   double severity{};            ///< mean severity of the fault `cause`; 0 if `cause` is NONE [-]
   double severity_deviation{};  ///< standard deviation of `severity` [-]
   double largest_score{};       ///< largest score of the last windows' mean, divided by its threshold; > 1: alarm [-]
@@ -72,12 +72,12 @@ std::string whyNotJudged(const Assessment& assessment);
 /// Derives a verdict from windows: level, most likely cause and evidence. Only the constructor allocates.
 ///
 /// The assessor judges the mean of the last windows of an operating point (Baseline). The mean shows WARN if the score
-/// of an indicator or of a cause's pattern is beyond the baseline's threshold. It shows ERROR if the deviation exceeds
-/// indicators.error_factor times the threshold. The level rises after three means in a row that show a higher level,
-/// each of at least three windows. The level falls after three means in a row that show a lower level, at the operating
-/// point that last showed the level. If indicators.evidence_windows is below three, it replaces three in these rules.
-/// The level OK is a verdict only after so many means. The last verdict stands while the operating point has no
-/// reference, or no reference with the payload.
+/// of an indicator or of a cause's pattern is beyond the baseline's threshold. The mean shows ERROR if a deviation is
+/// more than indicators.error_factor times the deviation at the threshold. The level rises after three means in a row
+/// with a higher level, each of at least three windows. The level falls after three means in a row with a lower level,
+/// at the operating point that last showed the level. The level OK is a verdict only after three means. If
+/// indicators.evidence_windows is below three, it replaces three in these rules. The last verdict stands while the
+/// operating point has no reference, or no reference with a similar payload.
 class Assessor
 {
 public:
@@ -93,8 +93,8 @@ public:
   /// Judges a complete window. `model`: indicators of the twin that were subtracted from the window; null: none.
   const Assessment& update(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
 
-  /// The work of `update` in parts, for a loop. `begin` starts the search for the cause of a window. Each call of
-  /// `advance` searches up to `signatures` more signatures. After the last one the assessment is that of the window.
+  /// `begin` and `advance` do the work of `update` in parts, for a real-time loop. `begin` judges a window. Each call
+  /// of `advance` searches up to `signatures` signatures for the cause. After the last one `assessment` is complete.
   void begin(const SignalIndicators& indicators, const SignalIndicators* model = nullptr) noexcept;
   void advance(std::size_t signatures) noexcept
   {
@@ -107,7 +107,7 @@ public:
   const Assessment& assessment() const noexcept { return settled_; }
   const Baseline& baseline() const noexcept { return baseline_; }
   const SignatureSet& signatures() const noexcept { return *signatures_; }
-  /// Number of signatures that `advance` must go through to finish a search.
+  /// Number of signatures that `advance` must search for one window.
   std::size_t searchLength() const noexcept { return cause_search_.signatures(); }
   const Deviations& deviations() const noexcept { return deviations_; }  ///< deviations of the last window
 
@@ -131,9 +131,9 @@ private:
   CauseSearch cause_search_;
   OperatingPoint point_;  // operating point of the window whose cause is being searched
   bool is_searching_{};
-  OperatingBin shown_in_;  // class of operating points that showed the level last
-  int worse_{};            // number of means in a row that show a higher level
-  int better_{};           // number of means in a row that show a lower level
+  OperatingBin shown_in_;  // class of operating points that showed the present level last
+  int worse_{};            // number of means in a row that show a higher level than the present level
+  int better_{};           // number of means in a row that show a lower level than the present level
   HealthLevel least_worse_{};
   HealthLevel most_better_{};
 };

@@ -18,13 +18,13 @@ struct SignatureSet;
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms difference for a drive like the twin, in the indicator's unit; 1e30: not known
-  double share{};  ///< further rms difference over |drive - twin| (of a line: over that of its signal's lines) [-]
+  double share{};  ///< further rms difference over |drive - twin|; for a line over that of all its signal's lines [-]
   double freedom{ 1.0 };  ///< degrees of freedom of the estimates `deviation` and `share` [-]
 };
 
 /// Class of operating points whose windows are compared with each other. A class is an octave of speed, a direction (-1
 /// backward, 0 both, 1 forward), a step of load (three eighths of the gear's rated torque) and a step of temperature
-/// (10 K). A missing measurement counts as 0.
+/// (10 K). A load or temperature that is not measured counts as 0.
 struct OperatingBin
 {
   int speed{};
@@ -45,61 +45,61 @@ OperatingBin binOf(const OperatingPoint& point, double load_step) noexcept;
 double loadStep(const Parameters& parameters) noexcept;
 
 /// Number of covariates that correct the indicators within a class: temperature, its square, mean magnitude of the load
-/// and four numbers of the payload. These four are the constant part of the load, the coefficients of its sine and
-/// cosine of the output angle, and the inertia. They do not depend on the path.
+/// and four numbers of the payload, which do not depend on the path. These numbers are the inertia and three parts of
+/// the load: the constant part, and the factors of the sine and the cosine of the output angle.
 constexpr std::size_t PLACES = 7;
 /// Number of covariates, temperature and its square, that have a separate slope in each class. Classes that differ only
 /// in temperature share the slopes of the other covariates.
 constexpr std::size_t OWN_PLACES = 2;
 using Place = std::array<double, PLACES>;
-using PlaceSquares = std::array<Place, PLACES>;  ///< products of each two covariates, as a square matrix
+using PlaceSquares = std::array<Place, PLACES>;  ///< products of every two covariates, as a square matrix
 
 /// Standard deviations of a sound drive's indicators from one recording to the next.
 struct Repeatability
 {
   double share{};            ///< standard deviation of an indicator over its magnitude, indicators.least_spread [-]
-  double friction_share{};   ///< part of the friction's deviation in proportion to the friction, at any speed [-]
-  double friction_torque{};  ///< constant part of the friction's deviation, at the motor [N.m]
+  double friction_share{};   ///< part of the friction's deviation that grows with the friction, over the friction [-]
+  double friction_torque{};  ///< constant part of the friction's deviation, as a torque at the motor [N.m]
 };
 
-/// Largest number of common causes, which change several healthy indicators together from window to window.
+/// Largest number of common causes, which change several indicators of a sound drive together from window to window.
 constexpr std::size_t COMMON_CAUSES = 3;
 
 /// Reference of one indicator: statistics over the healthy windows that determined the indicator.
 struct Reference
 {
   int count{};
-  double mean{};             // in the indicator's unit; fitReference sets the value at the class's mean covariates
-  double variance{};         // about the mean; fitReference sets the variance about the regression on the covariates
-  double within{};           // half the mean square of differences of successive windows; 0: not known
-  double relative_square{};  // mean square of relativeErrors over the windows; 0: not known [-]
-  double scale{};            // mean magnitude with the subtracted model included, in the indicator's unit
+  double mean{};             // mean of the indicator; after fitReference its value at the class's mean covariates
+  double variance{};         // variance about the mean; after fitReference about the regression on the covariates
+  double within{};           // half the mean square of the differences between successive windows; 0: not known
+  double relative_square{};  // mean square of the indicator's relativeErrors over the windows; 0: not known [-]
+  double scale{};            // mean magnitude of the indicator, to which a subtracted model's value is added again
   bool fitted{};             // whether fitReference set slopes and common causes
-  double ridge{};            // lambda of fitReference: prior information on the slopes, in windows at covariate 1 [-]
-  double slopes_freedom{};   // degrees of freedom that the slopes use [-]
-  Place slopes{};            // slopes over the covariates, in the indicator's unit
+  double ridge{};  // lambda of fitReference: prior information on the slopes, as windows at a covariate of 1 [-]
+  double slopes_freedom{};  // degrees of freedom that the slopes use [-]
+  Place slopes{};           // slopes over the covariates, in the indicator's unit
   /// Loadings of the indicator, divided by its spread, on the common causes, each of variance 1 [-].
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums of products of differences: of an indicator, of its covariates (Place), and of both. The sums are over all
-/// windows, or pairs of windows, that determined the indicator.
+/// Sums of products of two differences, of an indicator or of its covariates (Place). The sums are over all windows, or
+/// over all pairs of successive windows, that determined the indicator.
 struct IndicatorSums
 {
   int count{};
-  double square{};  // of the indicator's differences
-  Place mixed{};
+  double square{};  // sum of the squares of the indicator's differences
+  Place mixed{};    // sums of the indicator's difference times a covariate's difference
   PlaceSquares places{};
 };
 
-/// Sums of products of differences from the means, over the learned windows.
+/// Sums of products of the windows' differences from their means, over the learned windows.
 struct ReferenceSums
 {
   std::array<IndicatorSums, INDICATOR_COUNT> by_indicator{};
   std::array<double, INDICATOR_COUNT> means{};
   std::array<Place, INDICATOR_COUNT> mean_places{};
-  PlaceSquares places{};  // of the covariates, over all windows
-  /// Sums of products of each two indicators' differences over all windows, as the rows of a lower triangle.
+  PlaceSquares places{};  // sums of products of the covariates' differences, over all windows
+  /// Sums of products of every two indicators' differences over all windows, as the rows of a lower triangle.
   std::array<double, INDICATOR_COUNT*(INDICATOR_COUNT + 1) / 2> indicators{};
 };
 
@@ -131,7 +131,7 @@ struct ReferenceBin
   std::array<Reference, INDICATOR_COUNT> references;
 };
 
-/// The first windows of a class, kept to estimate the tail of their distribution, which no sum shows.
+/// The first windows of a class. fitReference estimates the tail of their distribution, for which sums do not suffice.
 struct KeptWindows
 {
   static constexpr std::size_t MOST = 64;
@@ -179,7 +179,7 @@ using Deviations = std::array<Deviation, INDICATOR_COUNT>;
 /// where  m, x  sound amplitude, its change (at least -m), in the unit of the amplitude;  c  result, in the same unit
 double amplitudeChange(double sound, double change) noexcept;
 
-/// Mean difference of the last windows of a class from their reference, and its covariance D + F F' for a sound drive.
+/// Mean difference of a class's last windows from the reference, and its covariance D + F F' if the drive is sound.
 /// The columns of F are the effects of the common causes; the diagonal matrix D holds the remaining variances.
 struct WindowResidual
 {
@@ -200,14 +200,14 @@ enum class AssessmentState : std::uint8_t
   WAITING = 0,          ///< no window has been completed
   LEARNING = 1,         ///< the last window was added to the reference of its operating point
   ASSESSED = 2,         ///< the last window was compared with the reference, and the level is a verdict
-  NO_REFERENCE = 3,     ///< the reference has no windows, or too few, at this operating point
-  TOO_FEW_WINDOWS = 4,  ///< no deviation found, but in fewer windows at this operating point than a verdict needs
-  OTHER_PAYLOAD = 5     ///< not compared, because the reference has no windows with a similar payload or load
+  NO_REFERENCE = 3,     ///< the reference has no windows, or too few, at the operating point of the last window
+  TOO_FEW_WINDOWS = 4,  ///< no deviation was found, but a verdict needs more windows at this operating point
+  OTHER_PAYLOAD = 5     ///< last window not compared: the reference has no windows with a similar payload or load
 };
 
 /// Indicators of a sound joint by operating point, given or learned from the first windows at each operating point. The
 /// class compares the trimmed mean of the last indicators.evidence_windows windows with the reference of the operating
-/// point. The mean omits a fifth of the windows at either end, at least one of three or more (docs/indicators.md).
+/// point. The mean omits the largest and the least fifth of the values, at least one each of three or more values.
 ///
 /// Law:   S^2 = p (r + 1/(e n)) + max(p (1 - r), w^2) / k + R^2 + q^2 + (p + R^2) (z - z_0)' L (z - z_0) / e
 ///        t = g mean(x - m - b (z - z_0)) / S,   g^2 = 1 / (1 - 2 y^2 a / k)
@@ -226,48 +226,49 @@ enum class AssessmentState : std::uint8_t
 ///        w^2      half the mean square of the differences of successive averaged windows, without the two largest;
 ///                 0 for three windows or fewer
 ///        r        share of s^2 that persists from window to window: 1 - half the mean square of the differences of
-///                 successive windows / s^2 (von Neumann 1941). It is shrunk to the mean of all scalars or all lines
-///                 (empirical Bayes), and its standard error is added. r = 1 if no windows are successive
+///                 successive windows / s^2 (von Neumann 1941). r is shrunk to the mean r of all scalars or all lines
+///                 (empirical Bayes), plus the standard error of r. r = 1 if no windows are successive
 ///        e        share of the windows that count as independent, (1 - r') / (1 + r'), at least one window of each
 ///                 uninterrupted sequence. r' is r with the error subtracted. e = 1 if no windows are successive
 ///        s_0, v_0 spread of similar lines (varianceOfAlike), ALIKE_FREEDOM; v_0 = 0 for scalars or if carried
 ///        c, c_0   rms of relativeErrors over the averaged windows and over the sound windows: the spread of a line
 ///                 grows with the standard error of its fit
 ///        q        resolution: a tenth of the effect of one encoder count; 0.3 for kurtosis, 0.5 for crest
-/// A carried reference comes from another motion, and a model is subtracted from the windows. Such a window is compared
-/// with the class of motion to and fro at its temperature that has the most windows. The slopes b are over temperature
-/// alone, and F = 0. carriedVariance is added to S^2. v is at most CarriedError::freedom.
+/// A carried reference comes from another motion, and the twin is subtracted from its windows and from the windows to
+/// compare. A window of motion to and fro is compared with the class of such motion at the window's temperature that
+/// has the most windows. The slopes b are over temperature alone, F = 0, v is at most CarriedError::freedom, and S^2
+/// contains carriedVariance.
 /// The score converts Student's t to a normal deviate (Wallace 1959). Few windows therefore cause no more false alarms
-/// than many windows.
-/// The thresholds are normal quantiles. All indicators share half of indicators.false_alarm_rate (two-sided), and the
-/// patterns of all causes share the other half (one-sided, Bonferroni). Without patterns the indicators share all of
-/// it. A window near the edge of its class counts for the class beyond the edge if its own class has too few windows.
-/// A window is not compared if its payload or load adds more than OTHER_PAYLOAD_WIDENING (p + R^2) to S^2.
+/// than many windows. The thresholds are normal quantiles. All indicators share half of indicators.false_alarm_rate
+/// (two-sided), and the patterns of all causes share the other half (one-sided, Bonferroni). Without patterns the
+/// indicators share the whole rate. A window near the edge of its class counts for the class beyond the edge if its own
+/// class has too few windows. If payload or load add more than OTHER_PAYLOAD_WIDENING (p + R^2) to S^2, Baseline does
+/// not compare the window.
 ///
-/// Learning opens at most indicators.baseline_classes classes. The constructor allocates 0.2 MB for each. A given
-/// reference needs 19 kB for each class, and its memory replaces that of the learned classes.
+/// Learning opens at most indicators.baseline_classes classes. The constructor allocates 0.2 MB for each class. A
+/// reference from setReference replaces this memory by 19 kB for each of its classes.
 class Baseline
 {
 public:
-  static constexpr std::size_t MAX_EVIDENCE = 100;  // windows
+  static constexpr std::size_t MAX_EVIDENCE = 100;  // largest number of windows in a mean
   /// Least number of windows from which a spread is estimated, also the least value of indicators.baseline_windows.
   static constexpr int MIN_WINDOWS = 8;
 
   /// `signatures`: set with the errors of carried references and the causes that have patterns.
   Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
-  /// Sets the reference, for example from a file, and ends learning. `carried`: it comes from another motion.
+  /// Sets the reference, for example from a file, and ends learning. `carried`: whether it comes from another motion.
   void setReference(std::vector<ReferenceBin> bins, bool carried = false);
 
   void reset() noexcept;  ///< forgets all windows and a learned reference; a reference from setReference stays
 
-  /// Learns or compares a window. Returns LEARNING, ASSESSED, NO_REFERENCE or OTHER_PAYLOAD. `model`: indicators of a
-  /// model that were subtracted from the window; nullptr: none.
+  /// Learns or compares a window. Returns LEARNING, ASSESSED, NO_REFERENCE or OTHER_PAYLOAD. `model`: indicators of the
+  /// twin that were subtracted from the window; nullptr: none.
   AssessmentState update(const SignalIndicators& indicators, const SignalIndicators* model,
                          Deviations& deviations) noexcept;
 
-  double threshold() const noexcept { return threshold_; }  ///< threshold of |score| [-]
-  Deviation pattern(double student) const noexcept;         ///< deviation of a pattern with this Student's t
+  double threshold() const noexcept { return threshold_; }  ///< threshold of an indicator's |score| [-]
+  Deviation pattern(double student) const noexcept;         ///< deviation of a pattern with Student's t `student`
   double patternThreshold() const noexcept { return pattern_threshold_; }  ///< threshold of the score of a pattern [-]
   const WindowResidual& residual() const noexcept { return residual_; }    ///< residual in the last window's class
   const OperatingBin& bin() const noexcept { return bin_; }                ///< class of the last window
@@ -276,7 +277,7 @@ public:
   {
     return sums_;
   }                                                           ///< sums of each class; empty after setReference
-  int windowsHere() const noexcept { return windows_here_; }  ///< number of windows learned, or compared since reset
+  int windowsHere() const noexcept { return windows_here_; }  ///< windows learned in the class, or compared since reset
   /// Number of windows that the reference of a class needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }  ///< whether setReference set the reference, which has no sums then
@@ -289,10 +290,10 @@ private:
   {
     std::array<double, INDICATOR_COUNT> difference{};  // NaN: not compared
     std::array<double, INDICATOR_COUNT> relative{};    // by relativeErrors
-    Place along{};  // squares of z - z_0 (law above) along the principal axes of the slopes' information
+    Place along{};  // squares of z - z_0 (Baseline) along the principal axes of the slopes' information
   };
 
-  /// Ring buffer of a class's last windows: number of windows and place of the next one.
+  /// Ring buffer of a class's last windows: number of windows and place of the next window.
   struct Recent
   {
     std::size_t count{};
@@ -303,25 +304,25 @@ private:
   struct Average
   {
     double difference{};
-    double relative_square{};  // c^2 of the law above
-    double scatter_square{};   // w^2 of the law above
-    double weight{};           // k of the law above
+    double relative_square{};  // c^2 of Baseline
+    double scatter_square{};   // w^2 of Baseline
+    double weight{};           // k of Baseline
   };
 
-  /// Factors and terms that the variance of a difference has in addition to the reference's variance.
+  /// Terms of Baseline's S^2: factors on the variance p of the reference, and a term for a carried reference.
   struct Widening
   {
-    double stays{};
-    double varies{};
-    double slopes{};   // factor for the uncertainty of the slopes
-    double carried{};  // added for a carried reference, in the indicator's unit squared
+    double stays{};    // r + 1 / (e n) [-]
+    double varies{};   // (1 - r) / k [-]
+    double slopes{};   // (z - z_0)' L (z - z_0) / e, for the uncertainty of the slopes [-]
+    double carried{};  // carriedVariance, in the indicator's unit squared
   };
 
-  /// Variance of a difference, in the indicator's unit squared.
+  /// Variance S^2 of a mean difference, in the indicator's unit squared.
   struct Variance
   {
     double all{};
-    double learned{};  // part that was estimated from the windows of the reference and the scatter of the last windows
+    double learned{};  // part of S^2 that was estimated from the windows, from p and w^2
   };
 
   ReferenceBin* find(const OperatingPoint& point) noexcept;
@@ -345,10 +346,10 @@ private:
   const double load_step_;  // [N.m]
   double threshold_{};
   double pattern_threshold_{};
-  std::array<double, INDICATOR_COUNT> floor_{};  // least spreads q
+  std::array<double, INDICATOR_COUNT> floor_{};  // least spreads q of Baseline
   Place axes_sizes_{};  // eigenvalues of the slopes' information, for the class of the last window
   WindowResidual residual_;
-  std::array<double, INDICATOR_COUNT> expected_{};  // expected values of the last window, without the model's
+  std::array<double, INDICATOR_COUNT> expected_{};  // expected values of the last window, without a subtracted model's
   OperatingBin bin_;
   int windows_here_{};
   bool given_{};

@@ -32,7 +32,7 @@ constexpr Cause causeOf(FaultKind kind)
 
 const char* causeName(Cause cause) noexcept;  ///< name of the cause, for example "tooth_root_crack"
 
-/// Groups of indicators that show the same property of the drive. In each group the strongest indicator counts.
+/// Groups of indicators that show one property of the drive. Only the largest score of each group counts.
 enum class Feature : std::size_t
 {
   RATIO,
@@ -76,7 +76,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept;
 /// phase-locked line the value is the magnitude of the complex change, whose phase depends on the place of the fault.
 constexpr std::size_t SIGNATURE_SIZE = SCALAR_COUNT + LINE_SIGNALS * FIRST_LOADED + LOADED_COUNT;
 
-constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< index; only for lines with hasLine
+constexpr std::size_t signatureNumber(LineSignal signal, std::size_t line)  ///< index in a signature; needs hasLine
 {
   return SCALAR_COUNT + static_cast<std::size_t>(signal) * FIRST_LOADED + line;
 }
@@ -113,7 +113,7 @@ constexpr bool isStiffness(ScalarIndicator indicator)
   return indicator == ScalarIndicator::TORSIONAL_STIFFNESS || indicator == ScalarIndicator::SECOND_STIFFNESS;
 }
 
-/// First value of a signature that is known only for a robot in closed loop (friction by load, lag).
+/// Index of the first value that a signature has only for a robot in closed loop (friction by load, lag).
 constexpr std::size_t FIRST_OF_ROBOT = indexOf(ScalarIndicator::LOAD_FRICTION);
 constexpr std::size_t ROBOT_NUMBERS = indexOf(ScalarIndicator::LAG_ORDER_4) - FIRST_OF_ROBOT + 1;
 
@@ -156,16 +156,16 @@ struct SignatureSet
 {
   SignatureSet() { sound.fill(std::numeric_limits<double>::quiet_NaN()); }
 
-  std::string gear;                           ///< name of the gear, for the user
-  double number_error{};                      ///< relative error of each value of a signature, r of CauseSearch [-]
-  double motion_error{};                      ///< further relative error in unlike motions, m of CauseSearch [-]
-  double line_error{};                        ///< share of a sound line that a fault changes, l of CauseSearch [-]
-  double evidence_weight{};                   ///< factor on the evidence, b_0 of CauseSearch [-]
-  double misfit_weight{};                     ///< part of this factor that no misfit lowers, w_1 of CauseSearch [-]
-  double severity_error{};                    ///< relative error of a severity estimated by the signatures [-]
-  double severity_misfit{};                   ///< additional relative error of the severity if no signature fits [-]
-  std::vector<Signature> signatures;          ///< signatures of the gear, with the values of `of_robots`
-  std::vector<RobotSignature> of_robots;      ///< signatures of robots by cause, in ascending order of severity
+  std::string gear;                       ///< name of the gear, for the user
+  double number_error{};                  ///< relative error of each value of a signature, r of CauseSearch [-]
+  double motion_error{};                  ///< further relative error if the motions are unlike, m of CauseSearch [-]
+  double line_error{};                    ///< share of a sound drive's line that a fault changes, l of CauseSearch [-]
+  double evidence_weight{};               ///< factor on the evidence, b_0 of CauseSearch [-]
+  double misfit_weight{};                 ///< part of evidence_weight that no misfit lowers, w_1 of CauseSearch [-]
+  double severity_error{};                ///< relative error of a severity estimated by the signatures [-]
+  double severity_misfit{};               ///< additional relative error of the severity if no signature fits [-]
+  std::vector<Signature> signatures;      ///< signatures of the gear, with the values of `of_robots`
+  std::vector<RobotSignature> of_robots;  ///< signatures of robots by cause, in ascending order of severity
   std::array<bool, SIGNATURE_SIZE> fitted{};  ///< values that the signatures contain; the search ignores the others
   std::array<double, SCALAR_COUNT>
       sound{};  ///< scalar indicators of the sound drive in the check-up, in their units; NaN: not known
@@ -173,7 +173,7 @@ struct SignatureSet
   std::array<double, CAUSE_COUNT> occurrence{};  ///< rating of how often a cause occurs; 0: not rated [-]
 };
 
-/// Causes that change an indicator at severity 1 by at least `share` of its sound value. `sign`: +1 increase, -1 fall.
+/// Causes that at severity 1 change an indicator by at least `share` of its sound value, up (`sign` 1) or down (-1).
 std::vector<Cause> causesThatMove(const SignatureSet& set, ScalarIndicator indicator, double sign, double share);
 
 std::size_t patternCount(const SignatureSet& set) noexcept;  ///< number of causes that have signatures
@@ -182,11 +182,11 @@ std::size_t patternCount(const SignatureSet& set) noexcept;  ///< number of caus
 struct PatternScore
 {
   Cause cause{};     ///< NONE: no cause
-  double student{};  ///< Student's t of the pattern with WindowResidual::pattern_freedom, one-sided [-]
+  double student{};  ///< Student's t of the pattern, one-sided, with pattern_freedom of WindowResidual [-]
 };
 
-/// The differences d of a window along the pattern p of each cause. A pattern combines many small changes, and can
-/// exceed its threshold before any single change does.
+/// The differences d of a window along the pattern p of each cause. A pattern combines many small changes. The score of
+/// the pattern can exceed its threshold while no single indicator exceeds the threshold of indicators.
 ///
 /// Law:   t = p' C^-1 d / sqrt(p' C^-1 p),  C = D + F F',  p_i = sum_h P(h) mu_i / |mu|,  |mu|^2 = sum_i mu_i^2 / D_ii
 /// where  h  goes over the signatures of the cause whose severity is nearest to 0.4; other symbols as in CauseSearch
@@ -230,19 +230,19 @@ struct CausePosterior
 ///        l        share of A that a fault of severity 1 changes, because errors of manufacture differ. For lost motion
 ///                 the sound value replaces A / sqrt(2), because play depends on the original preload
 ///        b        factor on the evidence, because the errors of a signature's values are correlated
-///        f, k     misfit of the most likely signature: it lowers b, to b_0 w_1 at least, and widens the severity's
-///                 error;  number of compared values
-///        n, q     speed and direction of the window's MotionKind, with index h of the signature's. Lines depend on the
+///        f, k     misfit of the most likely signature, number of compared values. The misfit lowers b, to b_0 w_1 at
+///                 least, and widens the severity's error
+///        n, q     speed and direction of the window's motion; n_h, q_h: of the signature's motion. Lines depend on the
 ///                 motion, because they meet resonances of the drive;  N = 0.2, Q = 0.3, w_0 = 0.001
 /// Teeth, interface and grease wear together. Therefore h is also a sum of the signatures of two or three of these
-/// faults in one motion. The others have the severity of the first fault, or 0.4 of it. A sum counts for the cause of
-/// its first fault. All sums of a cause together have the prior weight of its single signatures, in addition to them.
+/// faults in one motion. The second and third fault have the severity of the first fault, or 0.4 times this severity. A
+/// sum counts for the cause of its first fault. The sums of a cause add as much prior as its single signatures have.
 /// A stiffness changes by mu = c x^2 / x_h, with c the share in the signature, x the sound value in the motion of the
 /// window, and x_h that of SignatureSet::sound. An eccentric encoder then changes the compliance of all drives equally.
 /// The cause NONE stands for unknown changes (mu = 0, S = 3, 10, 30, 100) and, with a tenth of the prior weight, for
 /// two changes outside the gear. A dragging brake adds 0.05, 0.15, 0.4 or 1 of the sound running torque to running and
 /// Coulomb torque (S = 0). Noise of the sensors grows by a share g = 0.12, 0.25, 0.5 or 1: 1 + S^2 = (1 + g)^2, and the
-/// kinematic error grows by g. The search ignores values that the signatures do not contain.
+/// kinematic error grows by the share g. The search ignores values that the signatures do not contain.
 ///
 /// A search makes two passes over all signatures, one for their likelihoods and one for the sums over them. The caller
 /// chooses into how many parts it divides the passes. Only the constructor allocates.
@@ -268,7 +268,7 @@ private:
   struct Row
   {
     SignatureParts parts{};
-    double prior{ 1.0 };  // prior relative to that of a single signature
+    double prior{ 1.0 };  // prior over the prior of a single signature [-]
   };
   static std::vector<Row> rowsOf(const SignatureSet& set);
   static std::array<double, CAUSE_COUNT> priorsOf(const SignatureSet& set);
@@ -276,21 +276,21 @@ private:
   /// Sums over the signatures of one cause.
   struct Sum
   {
-    /// Adds a signature. `weighted`: logarithm of the likelihood, times the factor b.
+    /// Adds a signature. `weighted`: logarithm of its likelihood times b of CauseSearch. `prior`: its prior.
     void add(double weighted, double prior, double severity) noexcept;
 
-    double priors{};
-    double total{};   // sum of prior times weighted likelihood
-    double first{};   // first moment of the severity
-    double second{};  // second moment of the severity
+    double priors{};  // sum of the priors of single signatures
+    double total{};   // sum of prior times likelihood^b
+    double first{};   // sum of prior times likelihood^b times severity
+    double second{};  // sum of prior times likelihood^b times severity^2
   };
 
   std::shared_ptr<const SignatureSet> set_;
   std::vector<Row> rows_;
   std::array<double, CAUSE_COUNT> beforehand_;  // priors of the causes, (1 + O / O_m) / 2
-  // logarithms of the likelihoods, first of rows_, then of the unknown changes; after the first pass times b
+  // logarithms of the likelihoods, first of rows_, then of the unknown changes; times b after the first pass
   std::vector<double> likelihoods_;
-  double misfit_{ 1.0 };  // f, after the first pass
+  double misfit_{ 1.0 };  // misfit f of CauseSearch, valid after the first pass
   std::array<Sum, CAUSE_COUNT> sums_{};
   std::size_t next_{};
 };

@@ -3,7 +3,7 @@
 
 namespace hjt
 {
-/// A health indicator; its value is 0 if it is not valid.
+/// Health indicator. The value is 0 if the indicator is not valid.
 struct Indicator
 {
   bool valid{};

@@ -11,13 +11,13 @@
 namespace hjt
 {
 /// Lines that the indicators contain, each with its cycles per turn of the motor (trackedOrders). A phase-locked line
-/// (isPhaseLocked) depends on the two angles alone, so its phase is equal in all windows. The phase of the other lines
-/// changes, because the balls slip.
+/// (isPhaseLocked) depends on the angles of motor and output alone, so its phase is equal in all windows. The phase of
+/// the other lines changes, because the balls slip.
 ///
-/// A cracked tooth or rim yields only under load, in the direction of the load. Its line changes sign with the load and
-/// vanishes in the mean of a motion with loads of both signs. The part of a line in proportion to the load is therefore
-/// a separate line, from FIRST_LOADED on, with its value at the rated torque. A part that lags behind its cause also
-/// changes sign with the direction of motion, and is a third line.
+/// A cracked tooth or rim yields only under load, in the direction of the load. The line by the crack changes sign with
+/// the load and vanishes in the mean of a motion with loads of both signs. The part of a line in proportion to the load
+/// is therefore a separate line, from FIRST_LOADED on, with its value at the rated torque. A part that lags behind its
+/// cause also changes sign with the direction of motion, and is a third line.
 enum class Line : std::size_t
 {
   WAVE_GENERATOR_1,  ///< once per turn of the motor: an eccentric wave generator turns
@@ -106,7 +106,7 @@ enum class LineSignal : std::size_t
 {
   KINEMATIC_ERROR,
   MOTOR_TORQUE,
-  MOTOR_RIPPLE  ///< ripple of the motor angle, which is too fast for the motor's controller to appear in the torque
+  MOTOR_RIPPLE  ///< ripple of the motor angle, to which the motor's controller is too slow to respond
 };
 inline constexpr std::array ALL_LINE_SIGNALS{ LineSignal::KINEMATIC_ERROR, LineSignal::MOTOR_TORQUE,
                                               LineSignal::MOTOR_RIPPLE };
@@ -129,7 +129,7 @@ constexpr std::size_t indexOf(ScalarIndicator indicator)
 {
   return static_cast<std::size_t>(indicator);
 }
-constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< index; only for lines with hasLine
+constexpr std::size_t amplitudeIndex(LineSignal signal, std::size_t line)  ///< index of the amplitude; needs hasLine
 {
   return line < FIRST_LOADED ? SCALAR_COUNT + static_cast<std::size_t>(signal) * LINE_BLOCK + line :
                                LOADED_BLOCK + line - FIRST_LOADED;
@@ -164,7 +164,7 @@ struct OperatingPoint
   double direction{};      ///< share of the travel forward minus the share of the travel back: -1 ... 1 [-]
   double load{};           ///< magnitude of the load torque; NaN: not known [N.m]
   double temperature{};    ///< temperature of the drive; NaN: not measured [degC]
-  double load_constant{};  ///< part of the load torque that is equal at all output angles; NaN: not known [N.m]
+  double load_constant{};  ///< part of the load torque that does not depend on the output angle; NaN: not known [N.m]
   double load_sine{};      ///< factor of sin(output angle) in the load torque; NaN: load not known [N.m]
   double load_cosine{};    ///< factor of cos(output angle) in the load torque; NaN: load not known [N.m]
   double inertia{};        ///< inertia of drive and load at the joint, estimated from the motor torque [kg.m^2]
@@ -177,10 +177,10 @@ struct SignalIndicators
 
   double operator[](ScalarIndicator indicator) const noexcept { return values[indexOf(indicator)]; }
   double amplitude(LineSignal signal, Line line) const noexcept { return values[amplitudeIndex(signal, index(line))]; }
-  double phase(LineSignal signal, Line line) const noexcept;  ///< phase as a cosine; NaN: not phase-locked [rad]
+  double phase(LineSignal signal, Line line) const noexcept;  ///< phase, NaN if not phase-locked [rad]
 
   std::int64_t stamp{};     ///< end of the window [ns]
-  std::uint64_t windows{};  ///< number of windows completed since start or reset, with this one; 0: none yet
+  std::uint64_t windows{};  ///< number of windows completed since start or reset, including this window; 0: none
   double turns{};           ///< turns of the motor at constant speed in the window [-]
   OperatingPoint point;
   std::array<double, INDICATOR_COUNT> values{};
