@@ -23,8 +23,8 @@ namespace hjt
 ///        N    counts per turn                   [-]
 ///        n    count, 0 ... N - 1                [counts]
 ///
-/// The count does not contain whole turns. A real drive counts the turns by the jumps of the count, which needs at
-/// least two readings per turn. This model takes the turns from the true angle.
+/// The count does not contain whole turns. A real drive derives the turns from the jumps of the count, and needs at
+/// least two readings per turn. This model derives the turns from the true angle.
 class AbsoluteEncoder
 {
 public:
@@ -52,10 +52,10 @@ private:
   }
 
   std::int64_t counts_per_turn_;
-  double quantum_;  // one count [rad]
+  double quantum_;  // angle of one count [rad]
 };
 
-/// Optical encoder on the motor shaft. It counts in both directions from the angle at reset.
+/// Optical encoder on the motor shaft, which counts in both directions from the angle at reset.
 ///
 /// Law:   n = floor(theta / q),  q = 2 pi / C
 /// where  theta  motor angle since reset                                             [rad]
@@ -79,7 +79,7 @@ public:
 
 private:
   double counts_per_radian_;
-  double quantum_;  // one count [rad]
+  double quantum_;  // angle of one count [rad]
 };
 
 /// Pairs of independent standard normal numbers. Each number is a function of seed, channel and index. A reading
@@ -92,7 +92,7 @@ class CounterNoise
 public:
   explicit CounterNoise(std::uint32_t seed) : seed_(seed) {}
 
-  /// Two standard normal numbers [-].
+  /// Two standard normal numbers for the reading `index` of a channel [-].
   std::array<double, 2> normals(std::uint32_t channel, std::int64_t index) const noexcept
   {
     const auto counter = static_cast<std::uint64_t>(index);
@@ -125,7 +125,7 @@ private:
 ///        e_2, e_4  amplitudes of the errors by an oval disc and by the read head        [rad]
 ///        s, s_T    rms noise of the angle and of the torque                             [rad], [N.m]
 ///        n         standard normal number, a function of seed, sensor and step          [-]
-/// All readings have the same delay, a whole number of steps. An effect of size zero changes no bit of a reading.
+/// All readings have the same delay, a whole number of steps. An error with parameter 0 changes no bit of a reading.
 ///
 /// A velocity is the difference quotient of two readings of an angle, as in a drive:
 /// Law:   v = (a_k - a_(k-n)) / (n P),  n = sensors.velocity_window / P rounded, at least 1
@@ -133,7 +133,7 @@ private:
 /// With fewer than n + 1 readings the difference is over the available readings. With fewer than two readings, and
 /// during the delay, the velocity is zero.
 ///
-/// `update` only stores true values. The first reading of a step computes its errors. Several threads may read at once.
+/// `update` only stores true values. The first reading of a step computes the errors. Several threads may read at once.
 class JointSensors
 {
 public:
@@ -258,7 +258,7 @@ private:
     return angles;
   }
 
-  /// Error of an encoder that repeats every turn, with 1, 2 and 4 cycles per turn [rad].
+  /// Part of an encoder's error that repeats every turn, with 1, 2 and 4 cycles per turn [rad].
   static double lines(double angle, double eccentricity, const std::array<double, 2>& others) noexcept
   {
     double error = 0.0;

@@ -27,7 +27,7 @@ FlexsplineStress::FlexsplineStress(const Parameters& parameters)
   const double to_teeth = stress.cup_length - parameters.life.face_width;
 
   const double by_curvature = 1.0 / pitch;
-  const double bulge = rim_radius * rim_radius / 3.0 * by_curvature;  // radial displacement of an elliptic rim [m/rad]
+  const double bulge = rim_radius * rim_radius / 3.0 * by_curvature;  // radial displacement of the rim [m/rad]
   const double fading = std::pow(3.0 * (1.0 - POISSON * POISSON), 0.25) / std::sqrt(wall_radius * wall);
   const double cones = 0.5 * modulus * wall / (1.0 - POISSON) * by_curvature * to_teeth / to_middle;
   const double held = modulus * wall / (1.0 - POISSON * POISSON) * bulge *
@@ -50,7 +50,7 @@ double FlexsplineStress::turn(const RingEquilibrium& ring, int i) noexcept
 FlexsplineStress::Parts FlexsplineStress::parts(const RingEquilibrium& ring, int i, double turn) const noexcept
 {
   const RimTension& tension = ring.model().of<RimTension>();
-  // share of a segment's section that a crack leaves
+  // share of a segment's cross section that a crack leaves [-]
   const auto left = [&](int segment) { return tension.stiffness()[segment] / tension_stiffness_; };
   const auto pull = [&](int segment)
   { return left(segment) > 0.0 ? tension.tension(ring.shape(), segment) / (section_ * left(segment)) : 0.0; };

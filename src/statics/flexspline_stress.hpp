@@ -95,7 +95,7 @@ public:
   /// compression has no effect.
   double equivalentAmplitude(std::size_t place, const StressCycle& cycle) const noexcept
   {
-    constexpr double LEAST_MARGIN = 1e-3;  // lower limit, so that an immediate failure is a large finite amplitude
+    constexpr double LEAST_MARGIN = 1e-3;  // least value of 1 - mean, so that the amplitude stays finite [-]
     const double mean =
         notch_factor_[place] * StressCycle::equivalent(std::max(cycle.mean(), 0.0), cycle.shear) / ultimate_;
     return notch_factor_[place] * cycle.amplitude() / std::max(1.0 - mean, LEAST_MARGIN);
@@ -108,8 +108,8 @@ public:
   }
 
   /// Damage by one cycle: 1 / number of cycles to failure [-]. `share`: amplitude over the endurance limit;
-  /// `overloaded`: whether other cycles exceed the limit. In this case cycles below the limit do more damage (Haibach,
-  /// exponent 2 k - 1) than the S-N curve beyond its knee states.
+  /// `overloaded`: whether other cycles exceed the limit. If they do, cycles below the limit do more damage (Haibach,
+  /// exponent 2 k - 1 with k the exponent of Basquin's line) than the S-N curve beyond its knee states.
   double damage(double share, bool overloaded) const noexcept
   {
     constexpr double BEYOND_KNEE = 45.0;  // exponent for a loss of 5 % of strength in a decade of cycles
@@ -125,7 +125,7 @@ private:
   std::array<double, STRESS_PLACES> notch_factor_{};
 };
 
-/// Miner's sum over the loads of one place. Loads below the endurance limit do more damage if a load exceeds the limit.
+/// Miner's sum over the loads at one place. Loads below the endurance limit do more damage if another load exceeds it.
 class MinerSum
 {
 public:
@@ -146,6 +146,6 @@ public:
 private:
   double alone_{};  // damage of loads below the limit, valid if no load exceeds the limit
   double below_{};  // damage of loads below the limit, valid if a load exceeds the limit
-  double above_{};
+  double above_{};  // damage of loads above the limit
 };
 }  // namespace hjt

@@ -19,14 +19,14 @@ namespace hjt
 namespace
 {
 /// One size of the catalogue. Source of stiffness and ratings: Harmonic Drive, CSF/HFUS. Source of the friction at
-/// ratio 100: Schaeffler TPI 275 (RT1-H-CS), which lacks sizes 11 and 32. The figures of size 11 are not verified.
+/// ratio 100: Schaeffler TPI 275 (RT1-H-CS), which lacks sizes 11 and 32. The figures for size 11 are not verified.
 struct CatalogueSize
 {
   double size;
-  std::array<double, 2> breakpoints;       // [N.m]
-  std::array<double, 3> stiffness_of_50;   // [N.m/rad]
-  std::array<double, 3> stiffness;         // at ratios of 80 or more [N.m/rad]
-  double starting_torque, no_load_torque;  // [N.m]
+  std::array<double, 2> breakpoints;       // T1, T2 [N.m]
+  std::array<double, 3> stiffness_of_50;   // K1, K2, K3 at ratios below 80 [N.m/rad]
+  std::array<double, 3> stiffness;         // K1, K2, K3 at ratios of 80 or more [N.m/rad]
+  double starting_torque, no_load_torque;  // torques at the wave generator [N.m]
 };
 
 struct CatalogueRating
@@ -64,7 +64,7 @@ constexpr double CONFIGURED_SIZE = 25.0;
 constexpr double TORSION_ERROR = 1e-4;  // largest relative error of a fitted torsion [-]
 constexpr int TORSION_TRIALS = 30;
 constexpr int FITTED_BITS = 12;          // number of correct bits of a parameter that is fitted to a torque
-constexpr double LEAST_OF_START = 1e-3;  // least tried value over the start value of the fit [-]
+constexpr double LEAST_OF_START = 1e-3;  // least value that the fit tries, over its start value [-]
 constexpr int CATALOGUE_RATIO = 100;     // ratio for which the catalogue states friction
 constexpr const char* ORIGIN = "gear";
 constexpr const char* PRELOAD = "bearing.race_preload";
@@ -221,7 +221,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // The designed gear has the configured gear's share of cup friction in the torsion.
+  // The cup friction over T1 is that of the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which gears have about equal torsion");
   designer.set("life.rated_torque", figures.rated_torque, rule);
@@ -233,8 +233,8 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   designer.set("indicators.lost_motion_torque", 0.04 * figures.rated_torque, "4 % of the rated torque");
 }
 
-/// Fits the three slopes of the cup to the torsion of the gear. Cup, rim and teeth are in series, so the cup gets the
-/// compliance that rim and teeth lack.
+/// Fits the three stiffnesses of the cup to the gear's torsion in the catalogue. Cup, rim and teeth are in series, so
+/// the cup gets the compliance that rim and teeth do not have.
 void fitTorsion(const GearFigures& figures, Designer& designer)
 {
   const std::vector<double> torques{ figures.breakpoints[0], figures.breakpoints[1], figures.repeated_peak_torque };
@@ -251,7 +251,7 @@ void fitTorsion(const GearFigures& figures, Designer& designer)
     {
       if (!rows[i].status.ok())
       {
-        throw ParameterError("there is no equilibrium under " + numberText(torques[i]) +
+        throw ParameterError("there is no equilibrium under a load of " + numberText(torques[i]) +
                              " N.m: " + explanationOf(rows[i].status));
       }
       const double wanted = figures.torsion(torques[i]);
@@ -272,11 +272,11 @@ void fitTorsion(const GearFigures& figures, Designer& designer)
     designer.set("cup.torsion_stiffness", std::move(slopes), "fitted to the torsion of the gear in the catalogue");
   }
   throw ParameterError(
-      "the cup cannot be fitted to the torsion of the catalogue, because rim and teeth alone twist more than that");
+      "the cup cannot be fitted to the torsion of the catalogue, because rim and teeth alone exceed this torsion");
 }
 
-/// Fits a parameter > 0 so that a torque has the value `wanted`. `torque`: function of the parameters [N.m] that
-/// increases with the fitted parameter.
+/// Fits a parameter > 0 so that a torque has the value `wanted` [N.m]. `torque`: this torque as a function of all
+/// parameters [N.m], which increases with the fitted parameter. `start`: start value of the fit.
 template <class Torque>
 void fitTorque(const std::string& key, double start, double wanted, const std::string& rule, Torque&& torque,
                Designer& designer)

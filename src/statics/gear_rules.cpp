@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// What an analysis lacks, so that a fault has no effect in it; null if the analysis contains a part of the effect.
+/// Parts that the analysis lacks and without which the fault has no effect; null if the fault has an effect.
 const char* missingFor(const Fault& fault, const Parameters& parameters, Analysis analysis)
 {
   const unsigned changed = partsOf(fault, parameters.gear);
@@ -52,14 +52,14 @@ void requireFaultsAct(const Parameters& parameters, Analysis analysis)
 
 namespace
 {
-constexpr int EFFICIENCY_POSITIONS = 4;  // wave generator positions in a tooth pitch for the efficiency
+constexpr int EFFICIENCY_POSITIONS = 4;  // number of wave generator angles in a tooth pitch for the efficiency
 
 std::string shortNumber(double value)
 {
   return roundedText(value, 5);
 }
 
-/// The drive to be checked, without the configured faults and errors of manufacture.
+/// Parameters of the drive to be checked, without its configured faults and errors of manufacture.
 Parameters soundGear(const Parameters& parameters)
 {
   Parameters sound = withoutHeat(withoutWeight(withoutErrors(parameters)));
@@ -68,7 +68,7 @@ Parameters soundGear(const Parameters& parameters)
   return sound;
 }
 
-/// Adds a warning if a value differs from the expected value by more than a factor.
+/// Adds a warning if a parameter differs from its expected value by more than a given factor.
 class Nearness
 {
 public:

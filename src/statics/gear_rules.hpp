@@ -22,7 +22,7 @@ inline double fittingWaveAmplitude(const GearParameters& gear) noexcept
   return (radius + height) / ((gear.teeth_flexspline + 2) * (0.5 - 1.5 * height / radius));
 }
 
-/// Tip radius of the circular spline for which the teeth engage to the depth w0 [m].
+/// Tip radius of the circular spline at which the teeth engage to the depth of the wave amplitude [m].
 inline double fittingTipRadius(const GearParameters& gear) noexcept
 {
   return gear.flexspline_inner_radius + gear.rim_thickness + gear.tooth_height_flexspline;
@@ -34,14 +34,14 @@ inline double segmentLength(const GearParameters& gear) noexcept
   return 2.0 * gear.flexspline_inner_radius * std::sin(PI / gear.teeth_flexspline);
 }
 
-/// Axial stiffness E b t / p of the rim between two teeth, without the stiffness of the teeth themselves [N/m].
+/// Tension stiffness of the rim between two teeth, without the stiffness of the teeth themselves [N/m].
 inline double rimTensionStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
   return parameters.life.elastic_modulus * parameters.life.face_width * gear.rim_thickness / segmentLength(gear);
 }
 
-/// Upper bound of the rim's bending stiffness between two teeth, E b t^3 / (12 p (1 - c)) for rigid teeth [N.m/rad].
+/// Upper bound of the rim's bending stiffness between two teeth: its value if the teeth are rigid [N.m/rad].
 inline double rimBendingStiffness(const Parameters& parameters) noexcept
 {
   const GearParameters& gear = parameters.gear;
@@ -61,10 +61,10 @@ enum class Analysis
 /// @throws ParameterError for a configured fault that cannot act.
 void requireFaultsAct(const Parameters& parameters, Analysis analysis);
 
-/// Message if the teeth of the sound gear jam without load, so that the gear cannot turn; empty if they do not jam.
+/// Message that the teeth of the sound gear jam without load, so that the gear cannot turn; empty if they do not jam.
 std::string jamOf(const Parameters& parameters);
 
-/// Warnings about inconsistent parameters, with key, value and expected value. If the teeth jam, the jam is the only
-/// warning. The function solves a few equilibria in about 10 ms.
+/// Warnings about gear parameters that do not fit together, with key, value and expected value. If the teeth jam, the
+/// jam is the only warning. The function takes about 10 ms.
 std::vector<std::string> gearWarnings(const Parameters& parameters);
 }  // namespace hjt

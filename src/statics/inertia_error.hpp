@@ -15,7 +15,7 @@ namespace hjt
 ///        a, p   fitted to the dynamic ring of the shipped gear, 20 and 100 N.m, up to 317 rad/s (docs/model.md)
 ///
 /// At speeds at which the engagement of the teeth excites a mode of the ring, the error is several times larger than E.
-/// At most speeds it is smaller than E.
+/// At most other speeds the error is smaller than E.
 inline double expectedMeshForceError(const RingParameters& ring, const GearParameters& gear, double motor_speed,
                                      double torque) noexcept
 {

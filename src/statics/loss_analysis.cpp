@@ -26,10 +26,10 @@ public:
   PitchWalk& walk() { return walk_; }
   const SolveStatus& status() const { return walk_.status(); }
 
-  /// Torque of each kind of friction at the current position, as a torque at the motor [N.m].
+  /// Each kind of friction at the current position of the walk, as a torque at the motor [N.m].
   LossShares shares(double speed, double velocity_ratio)
   {
-    const Eigen::Vector2d rates(1.0, velocity_ratio);  // speeds of motor and output, over the speed of the motor
+    const Eigen::Vector2d rates(1.0, velocity_ratio);  // speeds of motor and output over the motor's speed
     const JointModel& model = walk_.model();
     const RingEquilibrium& ring = walk_.ring();
     const RingRates by_angle{ ring.shape(), ring.byWaveGenerator(), ring.byOutput() };
@@ -124,11 +124,11 @@ Breakaway analyseBreakaway(const Parameters& parameters, int positions)
 {
   requireAtLeast("positions", positions, 1);
   constexpr int MAX_ITERATIONS = 30;
-  constexpr double ENOUGH = 1e-6;  // relative change of the load that ends the iteration
+  constexpr double ENOUGH = 1e-6;  // relative change of the load below which the iteration ends
   LossMeter meter(parameters, positions);
   Breakaway result;
   result.starting = breakaway(meter, 0.0);
-  // Largest load that the friction holds. The iteration converges, because friction grows slowly with the load.
+  // Iterates to the largest load that the friction holds, and converges, because friction grows slowly with the load.
   const double ratio = nominalRatio(parameters.gear);
   double load = ratio * result.starting;
   double change = load;

@@ -10,17 +10,17 @@
 
 namespace hjt
 {
-/// Parameters of the solver for statics, which are solved to rounding errors with any tolerance of the running twin.
+/// Parameters of the solver for static analyses: `parameters` with a force tolerance near the rounding errors.
 inline SolverParameters staticSolver(SolverParameters parameters)
 {
-  constexpr double STATIC_TOLERANCE = 5e-7;  // [N]; rounding errors of a coordinate times tension stiffness are 2e-8 N
+  constexpr double STATIC_TOLERANCE = 5e-7;  // [N]; the rounding error of a tooth's position causes a force of 2e-8 N
   parameters.force_tolerance = std::min(parameters.force_tolerance, STATIC_TOLERANCE);
   return parameters;
 }
 
 /// Moves the joint, with the faults that it starts with, quasi-statically through one tooth pitch of the wave generator
-/// at constant load. With equal teeth this represents a whole turn, because all teeth together go through the states of
-/// one tooth in a turn.
+/// at constant load. With equal teeth one pitch represents a whole turn, because all teeth together go through the
+/// states of one tooth in a turn.
 class PitchWalk
 {
 public:
@@ -38,7 +38,7 @@ public:
   {
   }
 
-  /// Calls `visit(output speed over motor speed)` at each position in equilibrium. Stops if there is no equilibrium.
+  /// Calls `visit(output speed over motor speed)` in each position, up to a position without equilibrium. `load` [N.m].
   template <class Visit>
   void under(double load, Visit&& visit)
   {

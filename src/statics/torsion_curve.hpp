@@ -18,7 +18,7 @@
 namespace hjt
 {
 /// Torsion of the gear under load with the wave generator locked and without friction. The curve is odd, and linear
-/// between solutions of the ring at multiples of cup.torsion_breakpoints. Beyond them its last slope continues.
+/// between solutions of the ring at multiples of cup.torsion_breakpoints. Beyond the last solution its slope continues.
 class TorsionCurve
 {
 public:
@@ -26,7 +26,7 @@ public:
   {
     double torque{};     ///< torque at the start of the piece [N.m]
     double torsion{};    ///< torsion at the start of the piece [rad]
-    double stiffness{};  ///< [N.m/rad]
+    double stiffness{};  ///< slope of torque over torsion in the piece [N.m/rad]
   };
 
   /// Solves the ring at about ten torques. @throws ParameterError if the ring has no equilibrium at one of the torques.
@@ -79,7 +79,7 @@ public:
   }
 
 private:
-  /// Torques at which the ring is solved: on the first slope of the cup, on the second, and beyond.
+  /// Torques at which the ring is solved [N.m]: below the cup's first breakpoint, up to the second one, and beyond.
   static std::vector<double> torquesOf(const CupParameters& cup)
   {
     std::vector<double> torques{ 0.0 };
@@ -126,7 +126,7 @@ public:
   /// Puts the joint at rest without load.
   void reset() noexcept { state_ = CupFriction::State(); }
 
-  /// Applies the next load [N.m], which the load reaches without a reversal. @returns the torsion [rad].
+  /// Changes the load steadily to `torque` [N.m]. @returns the torsion [rad].
   double to(double torque)
   {
     if (!friction_.hasState())

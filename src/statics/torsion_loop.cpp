@@ -33,8 +33,8 @@ double angleAt(const std::vector<TorsionPoint>& sweep, double torque)
   }
   return sweep.back().output_angle;
 }
-/// Adds the friction of the cup's springs and sliders, from rest to the first point of the loop and along the loop.
-/// `rotations`: rotation of the rim at each angle [rad], and its derivative by the output angle [-].
+/// Adds the friction of the cup's springs and sliders to the torques of the loop. The course begins at rest without
+/// load. `rotations`: by point, rotation of the rim [rad] and derivative of this rotation by the output angle [-].
 void addCupFriction(const CupFriction& friction, double unloaded_rotation,
                     const std::vector<Eigen::Vector2d>& rotations, std::vector<TorsionPoint>& up,
                     std::vector<TorsionPoint>& down)

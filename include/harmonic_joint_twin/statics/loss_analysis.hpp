@@ -18,7 +18,7 @@ struct LossShares
   double flexing{};  ///< hysteresis of the rim's steel, which bends twice per turn
   double mesh{};     ///< friction of the tooth flanks
   double cup{};      ///< dry friction in parallel to the cup's spring
-  double damping{};  ///< dashpots of the model's ring
+  double damping{};  ///< friction of the dashpots in the model's ring
   double output{};   ///< dry friction of the output's bearing and seals
   double motor{};    ///< dry and viscous friction of the motor, and viscous friction of the output
 
@@ -29,7 +29,7 @@ struct LossShares
 /// Losses at constant motor speed and constant load.
 struct LossRow
 {
-  SolveStatus status;     ///< status of the ring's solve; the numbers are valid if ok()
+  SolveStatus status;     ///< status of the ring's solve; the other numbers of the row are valid if ok()
   double motor_speed{};   ///< speed of the motor [rad/s]
   double load_torque{};   ///< load at the output, > 0 resists positive motion [N.m]
   double load_reduced{};  ///< torque of the load at the motor without friction: mean of load x d(output)/d(motor) [N.m]
@@ -52,6 +52,6 @@ struct Breakaway
   double starting{};      ///< largest torque at the wave generator over a tooth pitch, without load [N.m]
   double back_driving{};  ///< load at the output whose torque on the free wave generator overcomes the friction [N.m]
 };
-/// Computes both torques at `positions` wave generator angles in a tooth pitch. @throws InputError if positions < 1.
+/// Computes Breakaway from `positions` wave generator angles in a tooth pitch. @throws InputError if positions < 1.
 Breakaway analyseBreakaway(const Parameters& parameters, int positions);
 }  // namespace hjt

@@ -22,14 +22,14 @@ struct ToothTable
   std::vector<double> bending_force;         ///< bending force of the segment to the next tooth [N]
   std::vector<double> mesh_force;            ///< normal force on the flank, > 0 leading, < 0 trailing flank [N]
   // Nominal normal stress at each place of the flexspline (ToothStress).
-  std::vector<double> stress_tooth_space;  ///< [Pa]
-  std::vector<double> stress_transition;   ///< [Pa]
-  std::vector<double> stress_flange;       ///< [Pa]
+  std::vector<double> stress_tooth_space;  ///< stress in the tooth spaces on both sides of the tooth [Pa]
+  std::vector<double> stress_transition;   ///< stress at the transition from the rim to the cup [Pa]
+  std::vector<double> stress_flange;       ///< stress at the flange [Pa]
   // Position of the tooth in its space of the circular spline (ToothPlace).
-  std::vector<double> across;  ///< [m]
-  std::vector<double> depth;   ///< [m]
-  std::vector<double> tilt;    ///< [rad]
-  std::vector<double> gap;     ///< [m]
+  std::vector<double> across;  ///< distance of the tooth from the axis of its space [m]
+  std::vector<double> depth;   ///< depth of the tooth's tip below the circular spline's tip circle [m]
+  std::vector<double> tilt;    ///< angle of the tooth against the axis of its space [rad]
+  std::vector<double> gap;     ///< distance of the tooth to the nearer flank; < 0 in contact [m]
 };
 
 /// Static equilibrium of the flexspline on the wave generator, without the circular spline (thesis ch. 5-6).
@@ -51,15 +51,15 @@ struct InsertionResult
 /// Computes the insertion. If the solve fails, `status` is not ok() and the other numbers are invalid.
 InsertionResult analyseInsertion(const Parameters& parameters);
 
-/// Check whether the teeth fit into each other without load.
+/// Result of the check whether the teeth of flexspline and circular spline fit into each other without load.
 struct FitCheck
 {
-  SolveStatus status;                       ///< status of the solves; the numbers are valid if ok()
+  SolveStatus status;                       ///< status of both solves; the numbers are valid if ok()
   int teeth_loaded{};                       ///< number of teeth that carry mesh force without load
   double wave_generator_force{};            ///< sum of the wave generator's forces over the teeth, without load [N]
   double wave_generator_force_insertion{};  ///< sum of the wave generator's forces without circular spline [N]
 
-  /// Whether the teeth jam: they load the wave generator more than the bent rim alone does.
+  /// Whether the teeth jam, that is, load the wave generator more than twice as much as the bent rim alone does.
   bool jams() const noexcept { return status.ok() && wave_generator_force > 2.0 * wave_generator_force_insertion; }
 };
 /// Computes two insertions, without and with the circular spline. If a solve fails, `status` is not ok().
@@ -70,7 +70,7 @@ struct StiffnessRow
 {
   SolveStatus status;     ///< status of the solve; the numbers are valid if ok()
   double torque{};        ///< load on the circular spline [N.m]
-  double output_angle{};  ///< angle of the output relative to zero load [rad]
+  double output_angle{};  ///< angle of the output minus its angle without load [rad]
   /// torque of the flexspline on the wave generator, about -torque over the ratio [N.m]
   double wave_generator_torque{};
   double housing_torque{};            ///< torque of the housing on the flexspline, through its cup [N.m]
@@ -85,7 +85,7 @@ struct StiffnessRow
 };
 /// Returns one row for each torque, in the order of `torques`. Each solve starts without load, so the rows do not
 /// depend on each other. `wave_generator_angle` [rad] and `torques` [N.m] may be any finite values. Torques act at the
-/// output; those > 0 resist positive motion. `status` of a row tells whether its solve failed. Source: thesis 7.1-7.5.
+/// output; torques > 0 resist positive motion. `status` of a row says whether its solve failed. Source: thesis 7.1-7.5.
 std::vector<StiffnessRow> analyseStiffness(const Parameters& parameters, double wave_generator_angle,
                                            const std::vector<double>& torques);
 
@@ -99,7 +99,7 @@ struct TurnRow
   double wave_generator_torque{};  ///< torque of the flexspline on the wave generator [N.m]
   double housing_torque{};         ///< torque of the housing on the flexspline, through its cup [N.m]
 };
-/// Returns `steps` + 1 rows, evenly spaced from angle 0 to `angle_range` [rad], with steps >= 1. `load_torque` [N.m]
+/// Returns `steps` + 1 rows at wave generator angles evenly spaced from 0 to `angle_range` [rad]. `load_torque` [N.m]
 /// acts at the output. The function calls `progress` with each finished step. @throws InputError if steps < 1.
 std::vector<TurnRow> analyseTurn(const Parameters& parameters, double load_torque, double angle_range, int steps,
                                  const std::function<void(int)>& progress);

@@ -11,7 +11,7 @@
 
 namespace hjt
 {
-/// Names of the places, in the order of StressPlace. Laws and sources: docs/life.md.
+/// Names of the places of the flexspline, in the order of StressPlace. Laws and sources: docs/life.md.
 constexpr std::array<const char*, STRESS_PLACES> STRESS_PLACE_NAMES{ "tooth space", "transition", "flange" };
 
 /// Nominal stress (without notch factor) at a place of the flexspline over a turn at constant load.
@@ -44,8 +44,8 @@ struct ToothStress
   /// Shear stress by place, constant around the circumference [Pa].
   std::array<double, STRESS_PLACES> shear{};
 
-  /// Stress cycle at a place: the range over all teeth at this instant, which for equal teeth is also the range of one
-  /// tooth over a turn. `place` < STRESS_PLACES.
+  /// Stress cycle at a place < STRESS_PLACES: range of the stress over all teeth at this instant. If all teeth are
+  /// equal, this is also the range at one tooth over a turn.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());

@@ -19,15 +19,15 @@ struct TorsionPoint
 /// Torsion of the gear under a slow load cycle, with friction of the teeth and a locked wave generator.
 struct TorsionLoop
 {
-  SolveStatus status;                ///< status of the solves; the numbers are valid if ok()
-  std::vector<TorsionPoint> points;  ///< points from +amplitude to -amplitude and back
+  SolveStatus status;                ///< status of all solves; the numbers are valid if ok()
+  std::vector<TorsionPoint> points;  ///< points from the largest load to minus this load and back
   double hysteresis{};               ///< width of the loop at zero load [rad]
   /// angle between the middles of the loop at the positive and the negative lost motion torque [rad]
   double lost_motion{};
 };
 
 /// Computes the loop. `amplitude`: largest load, > 0 [N.m]; `lost_motion_torque`: load at which the lost motion is
-/// measured, for example 4 % of the rated torque, > 0 and at most the amplitude [N.m]; `steps`: number of angles in
-/// each direction, >= 2. @throws InputError if an argument is out of range.
+/// measured, for example 4 % of the rated torque, > 0 and at most the amplitude [N.m]; `steps`: number of steps of the
+/// load in each direction, >= 2. @throws InputError if an argument is out of range.
 TorsionLoop analyseTorsionLoop(const Parameters& parameters, double amplitude, double lost_motion_torque, int steps);
 }  // namespace hjt
