@@ -21,10 +21,10 @@ using Causes = Eigen::Matrix<double, COMMON_CAUSES, 1>;
 
 constexpr std::size_t TRIMMED = 5;              // the trimmed mean omits one window in 5 at either end
 constexpr std::size_t LEAST_WINDOWS = 3;        // least number of windows of which the mean omits one at either end
-constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // makes a spread 2.2 times as large, which would hide most faults
-constexpr double LEAST_RIDGE = 4e-4;            // square of the covariates' noise, 0.02 of half a class [-]
-constexpr std::size_t JUMPS =
-    2;  // number of differences that are not scatter: onset of a fault, and from newest to oldest in the ring buffer
+constexpr double OTHER_PAYLOAD_WIDENING = 4.0;  // a spread 2.2 times as large would hide most faults [-]
+constexpr double LEAST_RIDGE = 4e-4;            // square of the covariates' noise, which is 0.02 of half a class [-]
+// Number of differences that are no scatter: at the onset of a fault, and from newest to oldest window in the buffer.
+constexpr std::size_t JUMPS = 2;
 
 /// Mean of Baseline::Compared::along over `count` windows.
 template <class Window>
@@ -69,7 +69,7 @@ bool isNear(double value, double step, int known) noexcept
   return std::isfinite(value) ? std::abs(value / step - known - 0.5) <= 0.5 + REACH : known == 0;
 }
 
-/// Whether the point lies within the class or no more than REACH beyond its edges.
+/// Whether the point lies within the class or at most REACH beyond the edges of the class.
 bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
   const OperatingBin own = binOf(point, load_step);
@@ -79,8 +79,8 @@ bool isInReach(const OperatingBin& bin, const OperatingPoint& point, double load
          isNear(point.temperature, TEMPERATURE_STEP, bin.temperature);
 }
 
-/// Covariates of a point [-]. Temperature and load go from -1 to 1 between the edges of the class, and to 1.5 beyond
-/// them. The payload is in steps of load, the inertia as its torque at INERTIA_ACCELERATION. A missing value is 0.
+/// Covariates of a point [-]. Temperature and load go from -1 to 1 between the edges of the class, to 1.5 outside. The
+/// payload is in half steps of load, its inertia as the torque at INERTIA_ACCELERATION. A value that is not known is 0.
 Place placeIn(const OperatingBin& bin, const OperatingPoint& point, double load_step) noexcept
 {
   const auto place = [](double value, int step, double size, double farthest)
@@ -171,7 +171,7 @@ ReferenceBin* Baseline::find(const OperatingPoint& point) noexcept
 {
   const OperatingBin bin = binOf(point, load_step_);
   ReferenceBin* own = nullptr;
-  ReferenceBin* near = nullptr;  // near class with the most windows
+  ReferenceBin* near = nullptr;  // class within reach that has the most windows
   for (ReferenceBin& known : bins_)
   {
     if (known.bin == bin)

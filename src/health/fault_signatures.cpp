@@ -17,14 +17,14 @@ namespace
 constexpr std::array TOGETHER{
   causeOf(FaultKind::TOOTH_WEAR), causeOf(FaultKind::INTERFACE_WEAR), causeOf(FaultKind::LUBRICANT_DEGRADATION)
 };                            // causes that grow together by use (docs/life.md)
-constexpr double LESS = 0.4;  // severity of a smaller wear over that of the largest wear of the drive [-]
+constexpr double LESS = 0.4;  // severity of the second and third wear of a sum over that of the first wear [-]
 
-/// Changes without signatures: an unknown change with the strength S, a dragging brake, or noise of the sensors.
+/// Change of the indicators by a cause without signatures: unknown (strength S), a dragging brake, or noise of sensors.
 struct Unknown
 {
   double strength;  // S of an unknown change
   double drag;      // friction by a brake, equal at every speed, over the sound running torque
-  double noise;     // additional noise of the sensors, as a share
+  double noise;     // share g by which the noise of the sensors grows
 
   double prior() const { return strength > 0.0 ? 1.0 : 0.1; }  // brakes and sensors fail less often than gears wear
 };
@@ -41,7 +41,7 @@ constexpr std::array<Unknown, 12> UNKNOWNS{ { { 3.0, 0.0, 0.0 },
                                               { 0.0, 0.0, 0.5 },
                                               { 0.0, 0.0, 1.0 } } };
 
-/// Changes of the indicators by a dragging brake and by noise. Noise increases the kinematic error (peak to peak).
+/// Changes of the indicators by a dragging brake and by noise of the sensors, which increases the kinematic error.
 Signature signatureOf(const Unknown& unknown, const WindowResidual& residual) noexcept
 {
   constexpr std::size_t FRICTION = indexOf(ScalarIndicator::RUNNING_TORQUE);
@@ -119,7 +119,7 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
         take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
         continue;
       }
-      // The score is the length of the change of the line's vector. Its square is smaller by 1, so that noise of two
+      // The score is the length of the vector of both parts' scores. Its square is reduced by 1, so that noise of two
       // parts has the mean square score of one indicator.
       const Deviation& cosine = deviations[cosineIndex(signal, line)];
       const Deviation& sine = deviations[sineIndex(signal, line)];
@@ -264,7 +264,7 @@ void CauseSearch::advance(const WindowResidual& residual, const OperatingPoint& 
       const double prior = rows_[row].prior * (OTHER_MOTION + likeness(first.motion, point));
       Sum& sum = sums_[static_cast<std::size_t>(first.cause)];
       sum.add(likelihoods_[row], prior, first.severity);
-      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // combined rows add to the prior of single rows
+      sum.priors += row < set_->signatures.size() ? prior : 0.0;  // combined signatures add to the prior of single ones
     }
     else
     {

@@ -13,8 +13,8 @@ namespace
 {
 constexpr int MARKS_PER_TOOTH = 16;
 constexpr double MIN_TRAVEL = 1e-6;  // least travel of the output, as a share of its nominal travel [-]
-constexpr double FARTHEST_PLACE =
-    1e15;  // farthest motor angle in marks, because a larger double cannot separate neighbouring marks
+// Farthest motor angle in marks, because larger doubles do not separate neighbouring marks.
+constexpr double FARTHEST_PLACE = 1e15;
 }  // namespace
 
 TurnWindow::TurnWindow(const GearParameters& gear)
@@ -103,7 +103,7 @@ Indicator TurnWindow::kinematicError() const noexcept
     lowest = std::min(lowest, errors.minCoeff());
     highest = std::max(highest, errors.maxCoeff());
   };
-  // The marks of the turn are two contiguous pieces of the ring buffer, with one older mark between the pieces.
+  // The marks of the last turn are two contiguous pieces of the ring buffer, with one older mark between the pieces.
   const Eigen::Index size = torsions_.size();
   const Eigen::Index first = newest_ + 1 == size ? 1 : 0;
   widen(first, newest_ + 1 - first, newest_);

@@ -32,12 +32,12 @@ template <int COUNT>
 class TwiceSmoothed
 {
 public:
-  static constexpr double TIME = 0.02;  ///< [s]
+  static constexpr double TIME = 0.02;  ///< time constant t [s]
   using Values = Eigen::Matrix<double, COUNT, 1>;
 
   void reset() noexcept { age_ = -1.0; }
 
-  /// `seconds`: time since the previous values [s].
+  /// Smooths the next values. `seconds`: time since the previous values [s].
   void update(const Values& values, double seconds) noexcept
   {
     if (age_ < 0.0)
@@ -90,7 +90,7 @@ private:
 /// The estimate smooths the measured torsion and adds inertia to the torque: x = F x_0,  T = F T_0 + J F d^2(psi)/dt^2
 /// where  F         filter of TwiceSmoothed
 ///        x_0, T_0  measured torsion [rad], torque at one end of the gear [N.m]
-///        J, psi    inertia between that end and the gear [kg.m^2], its angle [rad]
+///        J, psi    inertia between that end and the gear [kg.m^2], angle of J at the joint [rad]
 /// Law:   x = a - h p(T) + q p(theta) + T / K1 + c clamp(T, -T0, T0) + (1 / K2 - 1 / K1) sign(T) max(|T| - T1, 0)
 ///            + e_c cos(phi) + e_s sin(phi),  least squares over the samples
 /// where  x, T         torsion [rad], torque through the gear [N.m]
@@ -132,7 +132,7 @@ public:
     reset();
   }
 
-  /// Restarts the filter, because a sample has no torsion.
+  /// Restarts the filter after a sample without torsion.
   void interrupt() noexcept { smoothed_.reset(); }
 
   /// Begins the next window.
@@ -146,8 +146,8 @@ public:
     loops_ = 0;
   }
 
-  /// Adds the next sample. `given`: as measured, torque without that of the inertia; `speed`: of psi [rad/s];
-  /// `inertia`: J [kg.m^2]; `seconds`: since the last sample.
+  /// Adds the next sample. `given`: sample with the torque T_0; `speed`: speed of psi [rad/s]; `inertia`: J [kg.m^2];
+  /// `seconds`: time since the last sample [s].
   void add(const TorsionSample& given, double speed, double inertia, double seconds) noexcept
   {
     TwiceSmoothed<5>::Values read;
@@ -174,9 +174,9 @@ public:
   {
     Indicator stiffness;         ///< K1 [N.m/rad]
     Indicator second_stiffness;  ///< K2 [N.m/rad]
-    Indicator lost_motion;       ///< [rad]
-    Indicator hysteresis;        ///< 2 h [rad]
-    Indicator loop_area;         ///< [J]
+    Indicator lost_motion;       ///< lost motion [rad]
+    Indicator hysteresis;        ///< hysteresis 2 h [rad]
+    Indicator loop_area;         ///< mean area of the closed loops [J]
   };
 
   Found fit() noexcept
@@ -215,15 +215,15 @@ private:
   static constexpr int COSINE = 6;
   static constexpr int SINE = 7;
   static constexpr double MAX_ERROR = 0.1;  // largest standard error of the slope, as a share of the slope [-]
-  static constexpr double MAX_INFLATION =
-      10.0;  // largest inflation of the variance of h; it is larger if the branches lie at different torques [-]
-  static constexpr double DIRECTION_PLAY = 0.1;  // play of the motor angle, far above an encoder's noise [rad]
-  // Mean square that e's column must have after regression on the other columns, to determine e [-]. It exceeds (15
-  // urad / 0.44 mrad)^2, the law's residual for a sound drive over an eccentricity (config/real_sensors.yaml).
+  // Largest inflation of the variance of h [-]. It is larger if the branches of the loop lie at different torques.
+  static constexpr double MAX_INFLATION = 10.0;
+  static constexpr double DIRECTION_PLAY = 0.1;  // width of the play of the motor angle, far above encoder noise [rad]
+  // Mean square of e's column after regression on the other columns, from which the fit determines e [-]. It exceeds
+  // (15 urad / 0.44 mrad)^2: the law's residual for a sound drive over the eccentricity in config/real_sensors.yaml.
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
   static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
 
-  /// Adds a ridge for each part of e, larger if the other columns explain its column. False: too few samples.
+  /// Adds a ridge for e_c and e_s, larger if the other columns explain theirs. Returns false if samples are too few.
   bool holdEccentricity() noexcept
   {
     if (!regression_.fit(COLUMNS))
@@ -260,7 +260,7 @@ private:
     extreme_ = rising_ ? std::max(extreme_, joint_torque) : std::min(extreme_, joint_torque);
     if (std::abs(joint_torque - extreme_) > play_)
     {
-      // Each maximum is detected equally late, so a loop gains at its end the area that it lacks at its start.
+      // A maximum is detected a fall of play_ later, so a loop gains at its end the area that it lacks at its start.
       if (rising_)
       {
         area_ += past_first_ ? work_ : 0.0;
@@ -274,8 +274,8 @@ private:
   }
 
   double first_torque_;  // T1 [N.m]
-  double torque_span_;
-  double play_;  // T0 [N.m]
+  double torque_span_;   // health.stiffness_torque_span [N.m]
+  double play_;          // T0 [N.m]
   Play torque_play_;
   Play direction_play_;
   TwiceSmoothed<5> smoothed_;  // fields of TorsionSample and speed of psi
@@ -332,7 +332,7 @@ private:
   std::int64_t marks_per_turn_;
   double marks_per_radian_;
 
-  // A place is the motor angle in marks, with the sign that makes it grow in the direction of travel.
+  // A place is the motor angle in marks. Its sign is such that the place grows in the direction of travel.
   bool started_{};
   int direction_{ 1 };
   double place_{};              // place of the last sample
@@ -343,14 +343,14 @@ private:
   Eigen::Index count_{};
 };
 
-/// Exponential forgetting in time: a value with the age `window` has the weight 1/e.
+/// Exponential forgetting in time: the weight of a value falls to 1/e in the time `window`.
 class Forgetting
 {
 public:
   /// `window`: time constant [s].
   explicit Forgetting(double window) : window_(window) {}
 
-  /// Factor by which a weight falls over `elapsed` [ns]. The last factor is stored, because most steps are equal.
+  /// Factor on a weight after the time `elapsed` [ns]. The class stores the last factor, because most steps are equal.
   double kept(std::int64_t elapsed) noexcept
   {
     if (elapsed != elapsed_)
@@ -420,7 +420,7 @@ public:
   }
 
 private:
-  static constexpr double MIN_POWER = 0.1;     // [W]
+  static constexpr double MIN_POWER = 0.1;     // least magnitude of a mean power [W]
   static constexpr double STEADY_SHARE = 0.9;  // least magnitude of a mean power over the mean of its magnitude [-]
   static constexpr double MAX_EFFICIENCY = 1.01;
 
@@ -453,7 +453,7 @@ private:
   PowerMean joint_;
 };
 
-/// Range of a quantity over the current window of fixed length and the previous window.
+/// Range of a quantity (largest minus least value) over the current window of fixed length and the previous window.
 class RecentSpan
 {
 public:
@@ -595,7 +595,7 @@ public:
   {
     torsion_ = sample.motor_angle / nominal_ratio_ - sample.output_angle;
     turn_.update(sample.motor_angle, torsion_);
-    // The first sample has no step before it.
+    // The first sample has no time since a last sample.
     if (started_)
     {
       const std::int64_t elapsed = sample.stamp - stamp_;

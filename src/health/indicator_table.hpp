@@ -27,8 +27,8 @@ constexpr bool isInOrder(const Rows& rows, Key Row::*key)
 enum class FloorUnit
 {
   INDICATOR,       ///< unit of the indicator itself
-  ENCODER_COUNT,   ///< one count of both encoders, as an angle of the joint [rad]
-  COUNT_IN_A_TURN  ///< one count of both encoders, over the angle of the joint in one turn of the motor [-]
+  ENCODER_COUNT,   ///< root of the sum of squares of one count of each encoder, as angles of the joint [rad]
+  COUNT_IN_A_TURN  ///< ENCODER_COUNT over the angle of the joint in one turn of the motor [-]
 };
 
 struct ScalarRow
@@ -41,7 +41,7 @@ struct ScalarRow
   FloorUnit floor_unit{};
 };
 
-/// Error of a window's mean by the resolution of the encoders, as a share of an encoder count [-].
+/// Error of an indicator by the resolution of the encoders in a window, over FloorUnit::ENCODER_COUNT [-].
 constexpr double COUNT_SHARE = 0.1;
 
 /// Properties of the scalar indicators, for the assessment, messages and files.

@@ -24,7 +24,7 @@ namespace
 {
 using Complex = std::complex<double>;
 
-constexpr double BIN = TWO_PI / 8.0;  // range of the motor angle in which slip hardly changes the phase of a line [rad]
+constexpr double BIN = TWO_PI / 8.0;  // range of motor angle in which slip hardly changes a line's phase [rad]
 constexpr std::array SEARCHED{ LineSignal::MOTOR_RIPPLE, LineSignal::KINEMATIC_ERROR };
 constexpr double NOISE_FROM = -BearingSlip::MOST;
 constexpr double NOISE_TO = 2.0 * BearingSlip::MOST;
@@ -42,7 +42,7 @@ double speedSpread(const std::vector<LineSample>& samples)
   return std::sqrt(std::max(0.0, squares * static_cast<double>(samples.size()) / (sum * sum) - 1.0));
 }
 
-/// For each slip, square of a line's Fourier sum over the noise near the line. `sums`: Fourier sums in BINs, slip 0.
+/// |F_k|^2 / n_k of BearingSlip for each slip. `sums`: Fourier sums of line k at slip 0, one for each BIN of the angle.
 std::vector<double> powersOf(const std::vector<Complex>& sums, double by_slip, double step, std::size_t steps)
 {
   std::vector<Complex> turned(sums.size());
@@ -101,10 +101,10 @@ std::vector<BearingSlip::BearingLine> BearingSlip::linesOf(const OrderTracker& f
 
 double BearingSlip::find(const OrderTracker& fitted) const
 {
-  constexpr double CLEARLY = 25.0;
+  constexpr double CLEARLY = 25.0;       // least difference of L between two slips that counts [-]
   constexpr double FEWEST_TURNS = 10.0;  // least number of turns that separates a line with slip from one without
-  constexpr double MOST_TURNS =
-      500.0;  // largest number of turns, because time and memory grow with it and a damaged angle may have any number
+  // Largest number of turns, because time and memory grow with the turns and a damaged angle may have any number.
+  constexpr double MOST_TURNS = 500.0;
   constexpr double EVEN = 0.1;   // speedSpread below which folded lines are sharp [-]
   constexpr double FINE = 0.25;  // step of the slip, as a share of the resolution of the fastest line [-]
   const std::vector<BearingLine> lines = linesOf(fitted);
@@ -145,7 +145,7 @@ double BearingSlip::find(const OrderTracker& fitted) const
   const double zero_steps = std::ceil(-NOISE_FROM * fastest * range / (FINE * TWO_PI));
   const double step = -NOISE_FROM / zero_steps;
   const auto zero = static_cast<std::size_t>(zero_steps);
-  std::array<std::vector<double>, SEARCHED.size()> all;  // squares of all lines, by slip
+  std::array<std::vector<double>, SEARCHED.size()> all;  // L of BearingSlip by signal and slip
   for (std::size_t i = 0; i < SEARCHED.size(); ++i)
   {
     all[i].resize(static_cast<std::size_t>((NOISE_TO - NOISE_FROM) / step) + 1);

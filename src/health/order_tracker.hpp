@@ -16,7 +16,7 @@
 namespace hjt
 {
 /// Cosine and sine of many multiples of one angle. If a multiple is the sum or the difference of two earlier multiples,
-/// the class multiplies the rotations of these two and computes no sine and cosine.
+/// the class multiplies the rotations of these two instead of a call of sine and cosine.
 template <std::size_t COUNT>
 class AngleMultiples
 {
@@ -99,9 +99,9 @@ struct LineSample
 struct LineFit
 {
   bool valid{};
-  double cosine{};  ///< [rad] or [N.m]
-  double sine{};
-  double error{};  ///< standard error of the amplitude, in the unit of the line
+  double cosine{};  ///< cosine part of the line [rad] or [N.m]
+  double sine{};    ///< sine part of the line [rad] or [N.m]
+  double error{};   ///< standard error of the amplitude [rad] or [N.m]
 
   double amplitude() const noexcept { return std::hypot(cosine, sine); }
 };
@@ -111,18 +111,18 @@ struct LineFit
 /// Law:   y(t) = c . n(t) + sum_k m_k(t) ( a_k cos(o_k theta(t)) + b_k sin(o_k theta(t)) ),  weighted least
 ///        squares over the samples of a window
 /// where  y      a LineSignal;  a, b, c  coefficients;  theta  motor angle [rad];  o_k  order [1/turn]
-///        m      1 for a line that is not in proportion to the load, so that it is the line at the mean load. Otherwise
-///               T / T_r minus its mean or, for a part that lags, d T / T_r minus its mean
+///        m      T / T_r minus its mean for a line in proportion to the load, d T / T_r minus its mean for a part of
+///               this line that lags, and 1 for all other lines, which therefore are the lines at the mean load
 ///        T, d   load [N.m], direction;  T_r  rated torque [N.m]
 ///        n      regressors that are no lines: 1, d, speed, cos and sin of the output angle (weight, runout), and T,
 ///               T |T|, T^3 (because the torsion is not linear in the load)
 /// The tracker does not resample. Speed and direction may change, because a line is a function of the angle. A common
 /// fit of all lines keeps one line from leaking into another.
 ///
-/// A line is not fitted if its order is above 0.8 times half the samples per turn. A line is not valid if the travel
-/// does not separate it from another line (MAX_INFLATION). Orders o1 and o2 need about 0.3 / |o1 - o2| turns, for
-/// example 15 for 1.98 and 2. Lines in proportion to the load need a load that varies, and those that lag also need
-/// motion in both directions.
+/// The tracker does not fit a line whose order is above 0.8 times half the number of samples per turn. A line is not
+/// valid if the travel of the motor does not separate the line from another line (MAX_INFLATION). Orders o1 and o2 need
+/// about 0.3 / |o1 - o2| turns, for example 15 turns for 1.98 and 2. Lines in proportion to the load need a load that
+/// varies. Lines that lag also need motion in both directions.
 class OrderTracker
 {
 public:
@@ -148,7 +148,7 @@ public:
     regression_.add(row_, targets_, sample.weight);
   }
 
-  /// Fits the lines. `angle_step`: mean travel of the motor between two samples [rad]. False: too few samples.
+  /// Fits the lines. `angle_step`: mean motor travel between two samples [rad]. Returns false if samples are too few.
   bool fit(double angle_step) noexcept
   {
     const double highest = USED_BAND * 0.5 * TWO_PI / angle_step;
@@ -180,7 +180,7 @@ public:
     return fit;
   }
 
-  /// Whether the last fit separated all its lines. If not, the fit predicts nothing outside its window.
+  /// Whether the last fit separated all its lines. Only then the fit can predict signals outside its window.
   bool complete() const noexcept
   {
     bool determined = used_ > FIRST_LINE;
@@ -218,7 +218,7 @@ private:
   static constexpr double MAX_INFLATION = 4.0;  // largest factor by which other lines may inflate a line's variance [-]
   static constexpr double USED_BAND = 0.8;      // highest order of a line, as a share of half the samples in a turn [-]
   static constexpr double LEAST_LOAD = 0.05;    // least spread of the load, as a share of the rated torque [-]
-  static constexpr double ONE_WAY = 0.9;        // least mean direction of a motion in one direction [-]
+  static constexpr double ONE_WAY = 0.9;        // least |mean direction| of a motion that counts as one-way [-]
 
   // Columns of the regression: regressors that are no lines, lines in proportion to the load, other lines by order.
   static constexpr int DIRECTION = 1;
@@ -269,13 +269,13 @@ private:
     }
   }
 
-  /// Column of the plain line that has the order of column `i` of the lines in proportion to the load.
+  /// Column of the line that has the order of column `i` of the lines in proportion to the load, but is at mean load.
   int baseOf(int i) const noexcept
   {
     return FIRST_LINE + 2 * static_cast<int>(places_[FIRST_LOADED + static_cast<std::size_t>(i) / 2]) + i % 2;
   }
 
-  /// Subtracts the means from the load's columns, and drops the lines that the window does not determine.
+  /// Subtracts the mean of m from the columns of the lines in proportion to the load, or drops an undetermined line.
   void prepareLoaded(int used) noexcept
   {
     const double weighted_load = regression_.mean(LOAD, 0) / rated_torque_;
@@ -303,8 +303,8 @@ private:
   }
 
   const double rated_torque_;   // [N.m]
-  double mean_load_{};          // mean load of the window before, over the rated torque [-]
-  double mean_lagging_load_{};  // mean of load times direction in the window before, over the rated torque [-]
+  double mean_load_{};          // mean load in the previous window, over the rated torque [-]
+  double mean_lagging_load_{};  // mean of load times direction in the previous window, over the rated torque [-]
   std::array<bool, LOADED_COUNT> loaded_{};  // lines in proportion to the load that the last fit has
   PlainOrders orders_;                       // ascending, so that lines too fast for the samples are the last columns
   Places places_;                            // index of each line's order in orders_
@@ -319,17 +319,17 @@ private:
 /// the motor.
 ///
 /// Law:   L(s) = sum_k |F_k(s)|^2 / n_k,   F_k(s) = sum w r exp(-j o_k(s) theta),   s* = argmax L(s), 0 <= s <= MOST
-/// where  k       goes over the bearing's lines, the second sum over the samples;  w  weight of a sample
+/// where  k       index of a line of the bearing; the second sum is over the samples;  w  weight of a sample
 ///        r       ripple minus its value by the fit of the window without the bearing's lines [rad]
 ///        theta   motor angle [rad];  o_k(s)  order of line k with slip s (trackedOrders)
 ///        n_k     noise near line k: median of |F_k|^2 over slips from -MOST to 2 MOST, divided by ln 2
 /// The slip is 0 unless L(s*) of the ripple exceeds L(0) by CLEARLY. Noise alone exceeds this limit in less than one
-/// window in 1000. The slip is also 0 if L of the kinematic error at slip 0 exceeds its value at s* by CLEARLY.
+/// window in 1000. The slip is also 0 if L(0) of the kinematic error exceeds L(s*) of the kinematic error by CLEARLY.
 /// Source: bearings slip by 1 to 2 % (Randall and Antoni, Mech. Syst. Signal Process. 25, 2011, 485-520).
 ///
 /// The class searches for no slip at an even speed, because sampling then folds the lines of the teeth to sharp lines,
-/// two orders apart like the lines of a race. It keeps every sample of a window, so it is for recordings and data sets,
-/// not for a loop. It searches for no slip in windows of more than a million samples or with angles over 500 turns.
+/// two orders apart like the lines of a race. The class keeps every sample of a window, so it is for recordings and
+/// data sets, not for a real-time loop. It searches for no slip in windows of more than a million samples or 500 turns.
 class BearingSlip
 {
 public:
@@ -348,7 +348,7 @@ public:
 
   /// Slip of the window [-]; 0: no slip found. `fitted`: fit of the lines without slip to the samples.
   double find(const OrderTracker& fitted) const;
-  /// Fit of all lines to the samples, at the orders of a bearing with this slip. `angle_step`: see OrderTracker::fit.
+  /// Fit of all lines to the samples, at the orders of a bearing with the slip `slip`. `angle_step`: see `fit`.
   OrderTracker refit(double slip, double angle_step) const;
 
 private:

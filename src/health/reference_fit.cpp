@@ -14,16 +14,16 @@ namespace hjt
 {
 namespace
 {
-constexpr double CARRIED_WINDOWS = 10.0;  // number of windows in the means that CarriedError was fitted to
-constexpr double LEAST_INVERSE = 1e-6;    // least 1 / degrees of freedom; the distribution is then practically normal
-constexpr int MIN_COMMON = 4;             // number of indicators that a common persistence needs
+constexpr double CARRIED_WINDOWS = 10.0;  // number of windows in each mean that CarriedError was fitted to
+constexpr double LEAST_INVERSE = 1e-6;    // least 1 / degrees of freedom, at which a distribution is practically normal
+constexpr int MIN_COMMON = 4;             // least number of indicators for a CommonPersistence
 
 // Repeatability of the friction, divided by Repeatability::share.
 constexpr double FRICTION_SHARE = 3.0;    // part in proportion to the friction [-]
 constexpr double FRICTION_TORQUE = 22.0;  // constant part at the joint [N.m]
 
-/// Magnitude of the difference between drive and model. For a line it is the root of the sum of squares over the
-/// phase-locked lines of its signal, because resonances make single lines large in one motion and small in another.
+/// Magnitude of an indicator's difference between drive and twin. For a line it is the root of the sum of squares over
+/// all phase-locked lines of a signal, because resonances make a line large in one motion and small in another motion.
 double sizeOffModel(const ReferenceBin& bin, std::size_t indicator) noexcept
 {
   if (indicator < SCALAR_COUNT)
@@ -133,7 +133,7 @@ Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference, c
     stays = common.mean + own * (stays - common.mean);
     error = std::sqrt(own * error * error + (1.0 - own) * (1.0 - own) * all / common.count);
   }
-  // The share that persists may be larger or smaller than the estimate, by its error.
+  // The share that persists may be larger or smaller than the estimate by the standard error.
   const double least = std::clamp(stays - error, 0.0, 1.0);
   const double runs = static_cast<double>(bin.runs) / bin.windows;
   return { std::clamp(stays + error, 0.0, 1.0), std::max((1.0 - least) / (1.0 + least), std::min(runs, 1.0)) };
@@ -172,19 +172,19 @@ namespace
 {
 constexpr double LEAST_OTHERS = 0.05;  // lower bound of 1 - leverage of a window in its own fit [-]
 constexpr double TAIL_STEP = 0.01;     // step of 1 / degrees of freedom
-// Least gain of the log likelihood over that of the normal distribution: half the 95 % quantile of chi square with one
-// degree of freedom. Chance gives more in 5 % of all cases.
+// Least gain of log likelihood by a tail over the normal distribution: half the 95 % quantile of chi square with one
+// degree of freedom. Without a tail, chance gives a larger gain in 5 % of all cases.
 constexpr double LEAST_GAIN = 1.92;
 
-/// Whether the windows of an indicator show the tail. Kurtosis and crest of the residual and amplitudes of lines with a
-/// free phase do not show it, because they are not normally distributed even in windows without a tail.
+/// Whether the tail can be estimated from an indicator. Kurtosis and crest of the residual and amplitudes of lines with
+/// a free phase do not show the tail, because they are not normally distributed even if there is no tail.
 bool tellsTail(std::size_t indicator) noexcept
 {
   return indicator != indexOf(ScalarIndicator::RESIDUAL_KURTOSIS) &&
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// Histogram, over logarithmic classes, of the deviation of each window from all others over the spread of the others.
+/// Histogram with logarithmic classes of a ratio: deviation of a window from all other windows over their spread.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;
@@ -220,8 +220,8 @@ struct Residuals
 };
 
 /// Sets ReferenceBin::tail after the fit of the slopes, by maximum likelihood. The data are the deviations of each of
-/// the KeptWindows from all others, with the distribution of single windows' scores (Baseline). Normal windows give 0
-/// to 0.01.
+/// the KeptWindows from all other windows, with the distribution of single windows' scores (Baseline). For normally
+/// distributed windows the tail is 0 to 0.01.
 void fitTails(ReferenceBin& bin, const LearnedSums& sums) noexcept
 {
   const Eigen::SelfAdjointEigenSolver<Squares> axes(mapped(bin.information));
@@ -267,13 +267,13 @@ void fitTails(ReferenceBin& bin, const LearnedSums& sums) noexcept
   }
 }
 
-constexpr int MIN_FITTED = 4;  // number of windows that slopes need
+constexpr int MIN_FITTED = 4;  // least number of windows for slopes
 constexpr int RIDGE_STEPS = 4;
 constexpr double LEAST_FREEDOM = 1.0;  // least degrees of freedom of a spread
-constexpr int MIN_STEPS = 8;           // number of pairs of windows that their mean difference needs
+constexpr int MIN_STEPS = 8;           // least number of pairs of successive windows for Reference::within
 // Rms error of a covariate [-]: 0.025 K, or 0.25 % of the width of a class of load. Closer values count as equal.
 constexpr double PLACE_ERROR = 0.005;
-constexpr int MIN_ALIKE = 4;    // number of lines that a common variance needs
+constexpr int MIN_ALIKE = 4;    // least number of similar lines for varianceOfAlike
 constexpr int ITERATIONS = 30;  // power iterations for a principal component
 
 /// Adds the products of an indicator's difference `indicator` and the covariates' difference `place` to the sums.
@@ -313,11 +313,11 @@ struct SharedPlaces
     return mapped(with).tail<SHARED>() - by_own.transpose() * mapped(with).head<OWN>();
   }
 
-  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of this regression
+  Eigen::Matrix<double, OWN, SHARED> by_own;  // slopes of the regression
   SharedSquares squares;
 };
 
-/// Whether the other class differs from this one in temperature alone.
+/// Whether the class `other` differs from the class `bin` in temperature alone.
 bool serves(const ReferenceBin& other, const ReferenceBin& bin) noexcept
 {
   OperatingBin there = other.bin;

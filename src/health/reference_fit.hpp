@@ -10,37 +10,37 @@
 
 namespace hjt
 {
-/// Largest 1 / degrees of freedom of a single window's distribution: with 4 or fewer a spread has no finite error.
+/// Largest tail, 1 / degrees of freedom, of single windows. With 4 degrees or fewer a spread has no finite error.
 constexpr double MOST_TAIL = 0.22;
 
-/// Converts Student's t with `freedom` degrees of freedom to a normal deviate (Wallace 1959); studentOf converts back.
+/// Converts Student's t with `freedom` degrees of freedom to a normal deviate (Wallace 1959). studentOf is the inverse.
 double normalScore(double t, double freedom) noexcept;
 double studentOf(double score, double freedom) noexcept;
 
 /// Normal deviate that the share `share` of the normal distribution exceeds.
 double normalQuantile(double share);
 
-/// Repeatability at indicators.least_spread. At the shipped 0.01 the friction has that of one UR5 from one recording to
-/// the next, 3 % and 0.22 N.m (docs/compare.md). Other indicators have 1 %, an assumption without a measurement.
+/// Repeatability for the value of indicators.least_spread. With the shipped 0.01 that of the friction is as measured on
+/// one UR5 from one recording to the next, 3 % and 0.22 N.m (docs/compare.md). 1 % of other indicators is assumed.
 Repeatability repeatabilityOf(const Parameters& parameters);
 
 /// Standard deviation of a sound drive's indicator from one recording to the next, in the unit of the indicator.
 double repeatsWithin(const Repeatability& repeatability, const ReferenceBin& bin, std::size_t indicator) noexcept;
 
-/// How far the deviations of an indicator persist from window to window.
+/// Persistence of an indicator's deviations from window to window.
 struct Persistence
 {
-  double stays;        // share of the variance that persists, r of Baseline [-]
+  double stays;        // share of the indicator's variance that persists, r of Baseline [-]
   double independent;  // share of the windows that count as independent, e of Baseline [-]
 };
 
-/// Share of the variance that persists, over all indicators of one kind (scalars or lines) in a class: mean of the
-/// share, and variance of single indicators' shares about the mean.
+/// Share of the variance that persists from window to window, for all indicators of one kind (scalars or lines) in a
+/// class: mean of the indicators' shares, and variance of the shares about this mean.
 struct CommonPersistence
 {
   double mean{};
   double variance{};  // without the part by the statistical errors of the single shares
-  int count{};
+  int count{};        // number of indicators
 };
 
 CommonPersistence commonPersistence(const ReferenceBin& bin, std::size_t kind) noexcept;
@@ -52,9 +52,9 @@ Persistence persistenceOf(const ReferenceBin& bin, const Reference& reference,
 double carriedVariance(const ReferenceBin& bin, const CarriedError& error, std::size_t indicator,
                        double windows) noexcept;
 
-/// (Kurtosis - 3) / 6 of Student's t with 1/`tail` degrees of freedom. A variance from windows with this distribution
-/// has 1 + 3 times this value the uncertainty of a variance from normal windows. The value is bounded, because at 4
-/// degrees of freedom or fewer it is not finite.
+/// x = (kurtosis - 3) / 6 of Student's t with 1/`tail` degrees of freedom. The squared error of a variance estimated
+/// from windows with this distribution is (1 + 3 x) times that from normal windows. x is bounded, because at 4 degrees
+/// of freedom or fewer it is not finite.
 double excessOf(double tail) noexcept;
 
 /// How the distribution of deviation / spread differs from the normal distribution (symbols of Baseline).
@@ -71,7 +71,7 @@ struct Uncertainty
 /// window; `weight`: number k of averaged windows; `freedom`: degrees of freedom v + v_0 of the estimate.
 Uncertainty uncertaintyOf(double learned, double tail, double weight, double freedom) noexcept;
 
-constexpr double LEAST_LEFT = 1e-4;  ///< least share of a variance that common causes do not explain [-]
+constexpr double LEAST_LEFT = 1e-4;  ///< least share of an indicator's variance left beside common causes [-]
 
 using Squares = Eigen::Matrix<double, PLACES, PLACES, Eigen::RowMajor>;
 using PlaceVector = Eigen::Matrix<double, PLACES, 1>;
@@ -116,22 +116,22 @@ std::array<double, INDICATOR_COUNT> relativeErrors(const SignalIndicators& indic
 void learnWindow(ReferenceBin& bin, LearnedSums& sums, const SignalIndicators& indicators,
                  const SignalIndicators* model, const Place& here) noexcept;
 
-/// Prior standard deviation of the change of an indicator over half a class, as a share of the indicator [-]. Friction
-/// changes most: that of the shipped drive by 14 % in 5 K (threefold from 10 to 50 degC) and by 16 % in 12.6 N.m.
+/// Prior standard deviation of an indicator's change over half a class, as a share of the indicator [-]. Friction
+/// changes most, in the shipped drive by 14 % for 5 K (threefold from 10 to 50 degC) and by 16 % for 12.6 N.m of load.
 constexpr double SLOPE_SHARE = 0.2;
 
 /// Fits the reference of a class to the sums over its windows: the regression on the covariates (Place), the tails, and
 /// the common causes. `bin` is one of `bins`, and `all_sums` are their sums. The function does not allocate.
 ///
-/// Ridge regression gives the slopes. Those over load and payload are common to all `bins` that differ only in
+/// Ridge regression gives the slopes. The slopes over load and payload are common to all `bins` that differ only in
 /// temperature, because a class has windows with few payloads. The common causes are the first principal components of
-/// the residuals' correlations, for indicators that every window determined. An eigenvalue must exceed the edge (1 +
-/// sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967); at most COMMON_CAUSES do count.
+/// the residuals' correlations, for indicators that every window determined. At most COMMON_CAUSES count, with an
+/// eigenvalue above the edge (1 + sqrt(p / n))^2 of p independent indicators in n windows (Marchenko and Pastur 1967).
 ///
 /// Law:   b = (A + lambda)^-1 a,  d = tr((2 - (A + lambda)^-1 A) (A + lambda)^-1 A_own),
 ///        lambda = (s^2 + R^2) / (SLOPE_SHARE m)^2
-/// where  A, a   sums of products of covariates, and of covariates and indicator, about their means. Of other bins they
-///               contain only what their separate slopes do not explain;  A_own  part of A by this bin's windows
+/// where  A, a   sums of products of covariates, and of covariates and indicator, about their means. From other bins A
+///               and a contain only what those bins' own slopes do not explain;  A_own  part of A by windows of `bin`
 ///        b, d   slopes, with normal prior of mean 0; degrees of freedom that they use (Hastie and Tibshirani,
 ///               Generalized Additive Models, 1990, section 3.5)
 ///        s      standard deviation of the indicator about the regression

@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-// Ridge as a share of a column's mean square [-]. A column that differs from the others by less than a thousandth gets
-// no separate coefficient, for example the column of a nearly constant speed next to the column of ones.
+// Ridge as a share of a column's mean square [-]. A column that differs from other columns by less than a thousandth
+// gets no separate coefficient, for example the column of a nearly constant speed beside the column of ones.
 constexpr double RIDGE = 1e-6;
 
 /// Adds weight row row' to a square matrix that is stored by columns. The sums are valid in the lower triangle only; a
@@ -118,7 +118,7 @@ bool RunningRegression::fit(int used) noexcept
   {
     return false;
   }
-  // Column j times s_j has mean square 1. A column of zeros stays zero, and the ridge makes its coefficient 0.
+  // Column i times scale_[i] has mean square 1. A column of zeros stays zero, and the ridge makes its coefficient 0.
   for (int i = 0; i < used; ++i)
   {
     scale_[i] = normal_(i, i) > 0.0 ? std::sqrt(rows_ / normal_(i, i)) : 1.0;
@@ -138,7 +138,7 @@ bool RunningRegression::fit(int used) noexcept
     return false;
   }
   fitted_rows_ = rows_;
-  // Inverse of the factor, column by column. The sums of its squares are the diagonal of the matrix's inverse.
+  // Inverse of the factor, column by column. Sums of squares of its entries are the diagonal of the matrix's inverse.
   inverse_diagonal_.setZero();
   for (int j = 0; j < used; ++j)
   {

@@ -10,16 +10,16 @@ namespace hjt
 /// Law:   minimise  sum w (y - x . b)^2 + ridge
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
 ///        w     weight as given to `add`, times all shares that later calls of `forget` kept
-/// Columns are scaled to unit mean square before the factorisation. The ridge is 1e-6. It matters only for columns that
-/// depend on each other: it divides the effect among their coefficients, and their `inflation` is large.
+/// Columns are scaled to unit mean square before the factorisation. The ridge is 1e-6. The ridge matters only for
+/// columns that depend on each other: it divides their effect among their coefficients, and their `inflation` is large.
 class RunningRegression
 {
 public:
   RunningRegression(int columns, int targets);
 
   void reset() noexcept;
-  void forget(double kept) noexcept;
-  /// `weight`: inverse of the variance, relative to that of a row of weight 1 [-].
+  void forget(double kept) noexcept;  ///< multiplies all weights by `kept` [-]
+  /// Adds a row. `weight`: inverse of the variance of the row's errors, relative to a row of weight 1 [-].
   void add(const Eigen::Ref<const Eigen::VectorXd>& row, const Eigen::Ref<const Eigen::VectorXd>& targets,
            double weight = 1.0) noexcept;
 
@@ -30,7 +30,7 @@ public:
   /// Mean of the product of two columns [-].
   double mean(int column, int other) const noexcept;
 
-  /// Fits the first `used` columns. Returns false, and keeps the last fit, if rows are too few or the fit is singular.
+  /// Fits the first `used` columns. If rows are too few or the fit is singular, returns false and keeps the last fit.
   bool fit(int used) noexcept;
 
   double rows() const noexcept { return rows_; }  ///< number of rows, where `forget` reduces the count of old rows [-]
@@ -43,7 +43,7 @@ public:
   double inflation(int column) const noexcept { return inverse_diagonal_[column]; }
 
 private:
-  double& moment(int column, int other) noexcept;  // moment of the two columns, from the lower triangle
+  double& moment(int column, int other) noexcept;  // sum of the products of two columns, from the lower triangle
 
   double rows_{};
   double weight_{};
