@@ -16,16 +16,16 @@ constexpr double MEAN_TRAVEL = 0.5 * TWO_PI;     // travel after which a speed h
 constexpr double MEAN_TIME = 0.5;                // time after which a speed has weight 1/e in the mean speed [s]
 constexpr double LARGEST_RIPPLE = 12e-3;         // largest ripple of the measured speed in a calm motion [rad]
 constexpr double SETTLING_TIME = 0.1;            // time after uneven motion until the motion counts as calm [s]
-constexpr std::int64_t WAITING_TIME = 20000000;  // time before uneven motion that does not count as calm [ns]
-// After a change of speed the drive rings at 33 to 45 Hz. The pulse of the filters at the change is about six times as
-// large as the ringing, and at least ten times as large as the ripple by lines.
-constexpr double RINGING_SHARE = 0.15;      // ringing over the ripple [-]
+constexpr std::int64_t WAITING_TIME = 20000000;  // time before uneven motion in which the motion is not calm [ns]
+// After a change of speed the drive rings at 33 to 45 Hz. At the change the ripple has a pulse, about six times
+// as large as the ringing and at least ten times as large as the ripple by lines.
+constexpr double RINGING_SHARE = 0.15;      // amplitude of the ringing over the pulse of the ripple [-]
 constexpr double RINGING_TIME = 0.45;       // time in which the ringing decays by a factor of e [s]
-constexpr double CALM_RINGING = 0.3e-3;     // ringing as large as the noise in one line [rad]
-constexpr double LEAST_WEIGHT = 0.04;       // least weight of a sample whose residual counts: 1.5 mrad of ringing [-]
+constexpr double CALM_RINGING = 0.3e-3;     // amplitude of a ringing as large as the noise in one line [rad]
+constexpr double LEAST_WEIGHT = 0.04;       // least weight of a sample whose residual counts: at a ringing of 1.5 mrad
 constexpr double RESIDUAL_TRAVEL = TWO_PI;  // travel after which a residual has weight 1/e in the mean residual [rad]
 constexpr int MIN_RESIDUALS = 100;          // number of residuals for moments of the fourth order
-constexpr double FRICTION_WINDOWS = 10.0;   // memory of the friction estimate, in windows
+constexpr double FRICTION_WINDOWS = 10.0;   // memory of FrictionEstimate, over the travel of a window [-]
 }  // namespace
 
 SignalMonitor::SignalMonitor(const Parameters& parameters)
@@ -88,9 +88,9 @@ double SignalMonitor::weightAt(double output_angle) const noexcept
   return output_.gravity_torque != 0.0 ? output_.gravity_torque * std::sin(output_angle - output_.gravity_angle) : 0.0;
 }
 
-/// Adds a sample to the torsion loop. The torque is that of the load or, without an estimate of the load, of the
-/// weight, because the motor's torque includes friction. Without a weight it is the torque of the motor. Inertia lies
-/// between the place of the torque and the gear.
+/// Adds a sample to the torsion loop. The torque T_0 of the loop is the estimated load, without this estimate the
+/// weight, and without a weight the motor's torque, which includes friction. The inertia J lies between the place of
+/// T_0 and the gear.
 void SignalMonitor::addLoop(const SignalSample& sample, double motor_angle, double torsion, double velocity,
                             double seconds) noexcept
 {
@@ -189,7 +189,7 @@ void SignalMonitor::addAny(const SignalSample& sample, double velocity, double m
   }
 }
 
-/// Updates the time for which the motion has been calm. Returns whether the speed is even.
+/// Updates the time for which the motion has been calm. Returns whether the speed is even (near the mean speed).
 bool SignalMonitor::judgeMotion(double velocity, double seconds, bool motor_known) noexcept
 {
   const bool moving = std::abs(mean_velocity_) >= parameters_.least_speed;
@@ -222,7 +222,7 @@ void SignalMonitor::addSteady(const SignalSample& sample, double motor_angle, do
   window_.running_torque.add(direction * (sample.motor_torque - load / ratio_));
 }
 
-/// Lets a sample wait. Adds samples that waited for WAITING_TIME, or the oldest if no place is left, to the lines' fit.
+/// Lets a sample wait for WAITING_TIME, or less if no place is left, before the function adds it to the lines' fit.
 void SignalMonitor::addLines(const LineSample& sample, double travel, std::int64_t stamp) noexcept
 {
   while (waiting_count_ > 0 &&

@@ -25,28 +25,26 @@ namespace hjt
 {
 constexpr double NOT_MEASURED = std::numeric_limits<double>::quiet_NaN();
 
-/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Without an encoder the
-/// indicators that need both are not determined, without a load estimate the efficiency, without set points the lag.
+/// Signals of a drive's own sensors at one instant. A signal that is not measured stays NaN. Some indicators need both
+/// encoders. The efficiency needs an estimate of the load, the indicators of the lag need set points.
 struct SignalSample
 {
   std::int64_t stamp{};                   ///< [ns]
-  double motor_angle{ NOT_MEASURED };     ///< reading of the encoder, without jumps at full turns [rad]
-  double output_angle{ NOT_MEASURED };    ///< reading of the encoder, without jumps at full turns [rad]
-  double motor_velocity{ NOT_MEASURED };  ///< [rad/s]
-  double motor_torque{
-    NOT_MEASURED
-  };  ///< torque at the motor shaft: the commanded torque, or current times torque constant [N.m]
-  double load_torque{ NOT_MEASURED };   ///< estimate at the joint, without weight; > 0 resists positive motion [N.m]
-  double temperature{ NOT_MEASURED };   ///< [degC]
-  double target_angle{ NOT_MEASURED };  ///< set point of the output angle [rad]
+  double motor_angle{ NOT_MEASURED };     ///< angle of the motor's encoder, without jumps at full turns [rad]
+  double output_angle{ NOT_MEASURED };    ///< angle of the output's encoder, without jumps at full turns [rad]
+  double motor_velocity{ NOT_MEASURED };  ///< speed of the motor [rad/s]
+  double motor_torque{ NOT_MEASURED };    ///< torque at the motor shaft: commanded, or current x torque constant [N.m]
+  double load_torque{ NOT_MEASURED };     ///< estimated load without weight; > 0 resists positive motion [N.m]
+  double temperature{ NOT_MEASURED };     ///< temperature of the drive [degC]
+  double target_angle{ NOT_MEASURED };    ///< set point of the output angle [rad]
 };
 
 /// Ripple of an angle: the part of the angle that passes three high-pass filters in series.
 ///
 /// Law:   r = (s t / (1 + s t))^3 x
-/// where  x  angle, given by its speed [rad];  r  ripple [rad];  t  TIME [s];  s  Laplace variable
-/// A steady acceleration causes no ripple. The ripple contains a share of (1 + 1 / (2 pi f t)^2)^-1.5 of the amplitude
-/// of a line at frequency f, for example 0.9 at 30 Hz.
+/// where  x  angle, whose speed is given [rad];  r  ripple [rad];  t  TIME [s];  s  Laplace variable
+/// A steady acceleration causes no ripple. Of a line at the frequency f, the ripple contains the share
+/// (1 + 1 / (2 pi f t)^2)^-1.5 of the amplitude, for example 0.9 at 30 Hz.
 class RippleFilter
 {
 public:
@@ -64,7 +62,7 @@ public:
   double ripple() const noexcept { return TIME * TIME * (acceleration_ - smooth_acceleration_); }  ///< [rad]
 
 private:
-  static constexpr double TIME = 0.02;  // [s]
+  static constexpr double TIME = 0.02;  // time constant t of each filter [s]
 
   double smooth_speed_;           // [rad/s]
   double acceleration_{};         // [rad/s^2]
@@ -82,8 +80,8 @@ private:
 ///        phi        output angle [rad];  g_c, g_s  weight [N.m], only if the load is not known
 ///        B          viscous friction [N.m.s/rad];  T, i  load torque [N.m], ratio
 ///        l          friction by load [-]; it needs a load that varies
-/// J goes to 0 if the rms acceleration is below LEAST_ACCELERATION, or if the weight is in proportion to the
-/// acceleration.
+/// The estimate of J goes to 0 if the rms acceleration is below LEAST_ACCELERATION, or if the weight is in proportion
+/// to the acceleration.
 class TorqueBalance
 {
 public:
@@ -103,7 +101,7 @@ public:
   }
 
   /// Adds a sample. `torque`: motor torque minus load torque at the motor [N.m]; `load`: load torque at the motor, NaN
-  /// if not known [N.m]; `seconds`: since the last sample.
+  /// if not known [N.m]; `seconds`: time since the last sample [s]; `moving`: whether the motor moves.
   void add(double torque, double load, double velocity, double output_angle, double seconds, bool moving) noexcept
   {
     const double direction = std::copysign(1.0, velocity);
@@ -154,7 +152,7 @@ private:
 ///
 /// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
 /// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight [N.m];  c  constant part of the load [N.m]
-/// If the angle varies by less than about 0.3 deg rms, the fit determines only c, and s and k go to 0.
+/// If the rms variation of the angle is below about 0.3 deg, the fit determines only c, and s and k go to 0.
 class LoadOverAngle
 {
 public:
@@ -191,7 +189,7 @@ private:
 /// where  phi, phi_s  output angle, its set point [rad];  i  ratio;  theta  motor angle [rad];  o  order
 ///        R, A_o      rms ripple, amplitude of the line of order o, both of the lag [rad];  <>  mean over the travel
 /// c_o is an exponential mean over LINE_TRAVEL. A_o therefore contains a line whose phase changes, for example with the
-/// sign of the load. The ripple of the angle alone would contain the motion, but set points are smooth and r does not.
+/// sign of the load. r does not contain the motion, because it is the ripple of a difference from smooth set points.
 class LagEstimate
 {
 public:
@@ -208,8 +206,8 @@ public:
     lines_ = {};
   }
 
-  /// Adds a sample. `lag`: i (phi - phi_s), NaN without a set point [rad]; `travel`: of the motor since the last sample
-  /// [rad]; `seconds`: since the last sample; `moving`: whether the motor moves, so that the sample counts.
+  /// Adds a sample. `lag`: i (phi - phi_s), NaN without a set point [rad]; `travel`: motor travel since the last sample
+  /// [rad]; `seconds`: time since the last sample [s]; `moving`: whether the motor moves, so that the sample counts.
   void add(double lag, double motor_angle, double travel, double seconds, bool moving) noexcept
   {
     const bool is_first = age_ == 0.0;
@@ -260,7 +258,7 @@ public:
 private:
   static constexpr double LINE_TRAVEL = 2.0 * TWO_PI;    // travel after which r has weight 1/e in c_o [rad]
   static constexpr double LEAST_TRAVEL = 10.0 * TWO_PI;  // least travel in a window [rad]
-  static constexpr double SETTLING_TIME = 0.2;           // settling time of the filter [s]
+  static constexpr double SETTLING_TIME = 0.2;           // settling time of RippleFilter [s]
   static constexpr double USED_BAND = 0.8;               // highest order, as a share of half the samples per turn [-]
   static constexpr double SEEN_SHARE = 0.5;              // least share of the travel with enough samples for a line [-]
 
@@ -272,8 +270,8 @@ private:
   };
 
   RippleFilter filter_;
-  double last_{};  // lag [rad]
-  double age_{};   // [s]
+  double last_{};  // lag of the last sample [rad]
+  double age_{};   // time since the first sample [s]
   double travel_{};
   double square_{};
   std::array<Line, LINES> lines_;
@@ -285,8 +283,8 @@ private:
 /// where  tau, T      motor torque, load estimate (0 if none) [N.m];  i  ratio [-]
 ///        omega, phi  mean motor speed over about half a turn [rad/s], output angle [rad]
 ///        C, B        Coulomb friction [N.m], viscous friction [N.m.s/rad];  g_c, g_s, g_0  weight, offset [N.m]
-/// The fit is by recursive least squares over samples at nearly constant speed. Weights decay exponentially over the
-/// travel. The values are valid if the motion separates C and B, that is, has several speeds in each direction.
+/// The fit is by recursive least squares over samples at nearly constant speed. Weights decay exponentially with the
+/// travel. C and B are valid if the motion separates them, that is, has several speeds in each direction.
 class FrictionEstimate
 {
 public:
@@ -299,7 +297,7 @@ public:
     fitted_ = false;
   }
 
-  /// Adds a sample. `travel`: of the motor since the last sample [rad]; `torque`: tau - T / i [N.m].
+  /// Adds a sample. `travel`: motor travel since the last sample [rad]; `torque`: tau - T / i [N.m].
   void add(double travel, double velocity, double output_angle, double torque) noexcept
   {
     regression_.forget(std::exp(-std::abs(travel) / memory_));
@@ -310,8 +308,8 @@ public:
 
   void fit() noexcept { fitted_ = regression_.fit(COLUMNS); }
 
-  Indicator coulomb() const noexcept { return value(0); }  ///< [N.m]
-  Indicator viscous() const noexcept { return value(1); }  ///< [N.m.s/rad]
+  Indicator coulomb() const noexcept { return value(0); }  ///< Coulomb friction C [N.m]
+  Indicator viscous() const noexcept { return value(1); }  ///< viscous friction B [N.m.s/rad]
 
 private:
   static constexpr int COLUMNS = 5;
@@ -359,7 +357,7 @@ public:
   const SignalIndicators& indicators() const noexcept { return indicators_; }
 
   std::uint64_t refused() const noexcept { return refused_; }
-  double progress() const noexcept;  ///< complete share of the current window, 0 ... 1 [-]
+  double progress() const noexcept;  ///< share of the current window that is complete, 0 ... 1 [-]
 
 private:
   struct Mean
@@ -376,7 +374,7 @@ private:
 
   struct Window
   {
-    std::int64_t elapsed{};  // [ns]
+    std::int64_t elapsed{};  // time since the start of the window [ns]
     double travel{};         // travel at steady speed [rad]
     int samples{};           // number of samples at steady speed
     double line_travel{};    // travel of the samples that lines are fitted to [rad]
@@ -391,18 +389,18 @@ private:
     Mean running_torque;
     Mean ratio;
     Mean kinematic_error;
-    double residuals{};  // number of residuals
+    double residuals{};  // number of residuals in the moments below
     double residual_square{};
     double residual_fourth{};
     double residual_largest{};
   };
 
-  /// A sample for the lines that waits until the monitor knows whether the motion stays calm.
+  /// A sample for the fit of the lines that waits until the monitor knows whether the motion stays calm.
   struct Waiting
   {
     LineSample sample;
-    double travel{};       // [rad]
-    std::int64_t stamp{};  // [ns]
+    double travel{};       // motor travel since the sample before [rad]
+    std::int64_t stamp{};  // stamp of the sample [ns]
   };
 
   void start(const SignalSample& sample, double motor_angle) noexcept;
@@ -443,8 +441,8 @@ private:
   double last_angle_{};     // last angle of the motor [rad]
   double torsion_zero_{};   // torsion of the first sample, so that sums stay small [rad]
   double mean_velocity_{};  // mean velocity of the motor over about half a turn [rad/s]
-  RippleFilter speed_;      // for the measured speed, which uneven stamps do not disturb
-  RippleFilter angle_;      // for the motor angle
+  RippleFilter speed_;      // ripple from the measured speed, which uneven stamps do not disturb
+  RippleFilter angle_;      // ripple from the motor angle
   TorqueBalance balance_;
   LagEstimate lag_;
   double calm_{};  // time for which the motion has been calm [s]
@@ -452,7 +450,7 @@ private:
   std::size_t first_waiting_{};
   std::size_t waiting_count_{};
   double ringing_{};        // amplitude of the ringing after the last change of speed [rad]
-  double turn_travel_{};    // travel since turn_ was read last [rad]
+  double turn_travel_{};    // motor travel since the indicators of turn_ were read last [rad]
   bool tracked_{};          // whether the last fit separated all lines, so that the residual is valid
   double residual_mean_{};  // slow mean of the residual [rad]
   Window window_;

@@ -29,7 +29,7 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* TABLE = "\nsignatures: |\n";  // last key of the file; its rows are read as plain text
-constexpr std::size_t ROW_START = 5;                // number of words before the changes: cause, motion, speed, ...
+constexpr std::size_t ROW_START = 5;                // number of words in a row of the table before the changes
 
 std::size_t lineOf(const YAML::Node& node)
 {
@@ -45,7 +45,7 @@ public:
     readHeader(text.substr(0, table));
     if (table == std::string::npos)
     {
-      fail(0, "signatures: the file has no such table");
+      fail(0, "the file has no table 'signatures'");
     }
     const std::string above = text.substr(0, table + 1);
     readTable(text.substr(table + std::string(TABLE).size()),
@@ -76,7 +76,7 @@ private:
       const YAML::Node file = YAML::Load(text);
       if (!file.IsMap())
       {
-        fail(0, "no file of signatures: it has no keys");
+        fail(0, "the file has no keys, so it is no file of signatures");
       }
       const YAML::Node format = section(file, "format");
       if (!format.IsScalar() || format.Scalar() != std::to_string(SIGNATURE_FORMAT))
@@ -116,7 +116,7 @@ private:
     return number(node.IsScalar() ? node.Scalar() : "no number", range, lineOf(node), before);
   }
 
-  /// Number in a word. `before`: function that returns the beginning of the error's message.
+  /// Number that a word states, within a range. `before`: function that returns the beginning of the error's message.
   template <class Text>
   double number(const std::string& word, const Range& range, std::size_t line, const Text& before) const
   {
@@ -236,7 +236,7 @@ private:
     }
   }
 
-  /// Adds the changes of `of_robots` to a signature, interpolated linearly over the severity, from 0 at severity 0.
+  /// Adds the changes of SignatureSet::of_robots to a signature, interpolated linearly over the severity from 0 on.
   void addOfRobots(Signature& signature) const
   {
     RobotSignature before{};
@@ -322,8 +322,8 @@ std::string readText(const std::string& path)
   return std::move(*text);
 }
 
-/// Adds signatures between each two successive severities, at their geometric mean, by linear interpolation. Without
-/// the added signatures, estimates of the severity would stay at the severities of the runs.
+/// Adds a signature between every two successive severities, at their geometric mean, by linear interpolation. Without
+/// the added signatures, an estimated severity would stay at one of the severities of the runs.
 SignatureSet withSeveritiesBetween(SignatureSet set)
 {
   const std::vector<Signature> known = std::move(set.signatures);

@@ -33,8 +33,8 @@ constexpr std::array<SignatureErrorRow, 7> SIGNATURE_ERRORS{ { { "number", &Sign
 std::array<std::size_t, SIGNATURE_SIZE> indicatorsOfNumbers();
 
 /// The signatures of a file; an empty set for NO_FILE. `name`: value of indicators.signatures, an absolute path or a
-/// path in the default configuration. All users share the set of a file. The function allocates and reads files, so it
-/// is not for the real-time loop.
+/// path in the default configuration. All calls for a file return one shared set. The function allocates and reads
+/// files, so it is not for the real-time loop.
 /// @throws ParameterError with file, line and key if the file is damaged, has another format, or has an indicator or
 /// unit that this software does not have.
 std::shared_ptr<const SignatureSet> loadSignatures(const std::string& name);
@@ -46,7 +46,7 @@ SignatureSet parseSignatures(const std::string& text, const std::string& path);
 /// The text of a signature file, with three digits of each change. `motions`: name of each signature's motion.
 std::string signatureText(const SignatureSet& set, const std::vector<std::string>& motions);
 
-/// The text of a signature file, with the rows of the file `added`. `path`: path of the first file, only for messages.
+/// The text of a signature file, with the rows of the text `added`. `path`: path of the first file, only for messages.
 /// @throws ParameterError if a file is damaged or the files have different indicators.
 std::string withRowsOf(const std::string& text, const std::string& path, const std::string& added);
 }  // namespace hjt

@@ -17,7 +17,7 @@ namespace
 constexpr double LARGE = 1e100;  // product above which the function takes its logarithm, before it can overflow
 
 /// Half the square of the amplitude of a phase-locked line in the sound drive. Orders 2 and 1.98 count as one line,
-/// because a motion to and fro hardly separates them.
+/// because a motion to and fro hardly separates these orders.
 double soundSquare(const WindowResidual& residual, LineSignal signal, std::size_t line) noexcept
 {
   constexpr std::array NEIGHBOURS{ index(Line::WAVE_GENERATOR_2), index(Line::CIRCULAR_SPLINE_2) };
@@ -261,7 +261,7 @@ void SignatureTerms::add(const WindowResidual& residual, std::size_t indicator, 
 
 namespace
 {
-/// Least likeness of the motions at which a signature's lines count, because they depend more on motion than on fault.
+/// Least likeness of the motions at which a signature's lines count, because lines depend more on motion than on fault.
 constexpr double ALIKE = 0.5;
 }  // namespace
 
@@ -275,7 +275,7 @@ SeenFrom seenFrom(const Assessor& assessor, const OperatingPoint& point)
   std::transform(rows.begin(), rows.end(), directions.begin(),
                  [&](const std::vector<std::size_t>& own) { return terms.direction(own, point); });
 
-  /// Sums over the signatures of one cause and severity, weighted by the likeness of signature's and window's motion.
+  /// Sums over the signatures of one cause and severity, weighted by likeness of the motions of signature and window.
   struct Mean
   {
     double weight{};

@@ -14,13 +14,13 @@
 
 namespace hjt
 {
-constexpr double OTHER_MOTION = 1e-3;  // weight of a signature whose motion is unlike the window's, w_0 [-]
+constexpr double OTHER_MOTION = 1e-3;  // least weight of a signature by its motion, w_0 of CauseSearch [-]
 
 /// Likeness of a signature's motion to the motion of a window, a of CauseSearch: 0 (unlike) to 1 (alike).
 inline double likeness(const MotionKind& motion, const OperatingPoint& point) noexcept
 {
-  constexpr double SPEED_RANGE = 0.2;      // difference of the speeds' natural logarithms in similar motions, N
-  constexpr double DIRECTION_RANGE = 0.3;  // difference of the directions in similar motions, Q
+  constexpr double SPEED_RANGE = 0.2;      // difference of ln(speed) between similar motions, N of CauseSearch [-]
+  constexpr double DIRECTION_RANGE = 0.3;  // difference of direction between similar motions, Q of CauseSearch [-]
   if (!(motion.speed > 0.0 && point.speed > 0.0))
   {
     return 1.0;
@@ -43,20 +43,20 @@ public:
   /// 0 for a signature (CauseSearch). `alike`: likeness of the motions of signature and window, 0 ... 1.
   double logLikelihood(const SignatureParts& parts, double strength, double alike) const noexcept;
 
-  /// Misfit f (CauseSearch): mean square of the difference minus the change, in spreads of a sound drive; at least 1.
+  /// Misfit f (CauseSearch): mean square of the window's difference minus the change by `parts`, in spreads; >= 1 [-].
   double misfit(const SignatureParts& parts) const noexcept;
 
   using Direction = std::array<double, INDICATOR_COUNT>;
 
-  /// Mean of the signatures' normalised changes, in spreads of a sound drive, weighted by the likeness of the motions
-  /// of signature and window. Lines do not count.
+  /// Pattern p of CausePatterns: mean of the normalised changes by the signatures `rows`, weighted by the likeness of
+  /// the motions of signature and window, without lines.
   Direction direction(const std::vector<std::size_t>& rows, const OperatingPoint& point) const noexcept;
 
-  /// The difference of the window along a direction, over the spread of a sound drive in this direction. `instead`: a
+  /// Difference of the window along a direction, over the spread of a sound drive in this direction [-]. `instead`:
   /// signature whose change replaces the difference.
   double along(const Direction& direction, const Signature* instead = nullptr) const noexcept;
 
-  /// Largest score that a change of a single indicator by the signature would have. Lines count only if `with_lines`.
+  /// Largest score of a single indicator if it changes as in the signature [-]. Lines count only if `with_lines`.
   double largest(const Signature& signature, bool with_lines, const Deviations& deviations) const noexcept;
 
 private:
@@ -67,12 +67,12 @@ private:
   struct Term
   {
     double difference;
-    double own;          // variance that common causes do not explain
+    double own;          // variance of the difference that common causes do not explain
     Causes common;       // loadings on the common causes
-    std::size_t number;  // index in the signature
+    std::size_t number;  // index in Signature::change
     std::size_t indicator;
     bool has_phase;      // whether the indicator is the cosine or sine part of a line
-    double sound;        // value of the sound drive, to which a share refers
+    double sound;        // indicator of the sound drive, of which a signature may state a share
     double line_square;  // A^2 / 2 of a sound line, square of the sound lost motion, 0 for others (CauseSearch)
   };
 
