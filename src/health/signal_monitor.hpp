@@ -34,7 +34,7 @@ struct SignalSample
   double output_angle{ NOT_MEASURED };    ///< angle of the output's encoder, without jumps at full turns [rad]
   double motor_velocity{ NOT_MEASURED };  ///< speed of the motor [rad/s]
   double motor_torque{ NOT_MEASURED };    ///< torque at the motor shaft: commanded, or current x torque constant [N.m]
-  double load_torque{ NOT_MEASURED };     ///< estimated load without weight; > 0 resists positive motion [N.m]
+  double load_torque{ NOT_MEASURED };     ///< estimated joint load without weight; > 0 resists positive motion [N.m]
   double temperature{ NOT_MEASURED };     ///< temperature of the drive [degC]
   double target_angle{ NOT_MEASURED };    ///< set point of the output angle [rad]
 };

@@ -17,8 +17,8 @@
 
 namespace hjt
 {
-/// Forces, slips and stresses of the tooth model over one turn of the wave generator at constant load, for unit
-/// coefficients of friction.
+/// Forces, slips and stresses of the tooth model over one turn of the wave generator at constant load, for coefficients
+/// of friction of 1.
 struct RevolutionLoad
 {
   double flank_sliding{};  ///< integral of force times sliding on the flanks of one tooth of the flexspline [N.m]
@@ -30,7 +30,7 @@ struct RevolutionLoad
   double tension_range{};  ///< largest minus smallest nominal tension stress of the rim [Pa]
 };
 
-/// Applies `of(x, y)` to each pair of corresponding numbers x of `a` and y of `b`.
+/// The loads whose numbers are `of(x, y)` of the corresponding numbers x of `a` and y of `b`.
 template <class Of>
 RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& of)
 {
@@ -59,15 +59,15 @@ inline double archardDepth(double coefficient, double sliding, double area)
 /// maker's number of turns, halved for every `grease_halving` kelvin above `grease_temperature`.
 double greaseAgeing(const LifeParameters& parameters, double temperature);
 
-/// Factor on the ageing of grease by the load [-]: the gear maker's (T_av / T_N)^3, at least 1, with T_N the rated
-/// torque. `mean_cube`: mean of (torque / T_N)^3.
+/// Factor on the ageing of grease by the load [-]: the gear maker's (T_av / T_N)^3, at least 1, with T_av the average
+/// torque and T_N the rated torque. `mean_cube`: mean of (torque / T_N)^3 over the turns.
 inline double greaseLoadFactor(double mean_cube)
 {
   return std::max(1.0, mean_cube);
 }
 
-/// Rate of wear over the rate with fresh grease [-]. It grows linearly in the age of the grease, from 1 to
-/// `grease_wear_factor` when a change is due.
+/// Rate of wear over the rate with fresh grease [-]. This factor grows linearly with `age`, the used share of the
+/// grease's life, from 1 to `grease_wear_factor` when a change of the grease is due.
 inline double greaseWearFactor(const LifeParameters& parameters, double age)
 {
   return 1.0 + (parameters.grease_wear_factor - 1.0) * age;
@@ -84,15 +84,15 @@ struct AgeingParameters
 
 /// Range of the stress intensity at a crack across the tooth space [Pa sqrt(m)], for an edge crack in a strip (Tada).
 /// The wave generator prescribes the rim's shape, so that a deeper crack reduces the bending moment of the section, but
-/// not the tension. The notch increases the stress of a crack that is short compared with its radius (Lukas and
-/// Klesnil). `depth` of the crack, >= 0 [m].
+/// not the tension. The notch at the tooth root increases the stress if the crack is short compared with the notch
+/// radius (Lukas and Klesnil). `depth`: depth of the crack, >= 0 [m].
 double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
-/// Growth of a crack in one turn by Paris' law with a threshold [m]. The rim bends twice in a turn.
+/// Growth of a crack of the depth `depth` [m] in one turn, by Paris' law with a threshold [m]. The rim bends twice.
 double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
 /// Number of turns at rated torque that wear the wave generator's bearing as much as one turn under `load_torque`
-/// [N.m]. The life of the bearing is in inverse proportion to the cube of the torque.
+/// [N.m]. The bearing's life in turns is in inverse proportion to the cube of the torque.
 double bearingWear(const LifeParameters& parameters, double load_torque);
 
 /// Life of the bearing in turns at rated torque: a Weibull distribution with the catalogue's L10 and L50.
@@ -103,9 +103,9 @@ struct BearingLife
 
   explicit BearingLife(const LifeParameters& parameters);
 
-  /// Life that a share `failed` of all bearings does not exceed, 0 < failed < 1.
+  /// Life in turns at rated torque that a share `failed` of all bearings does not exceed, 0 < failed < 1.
   double quantile(double failed) const;
-  /// Share of all bearings that have failed after a number of turns.
+  /// Share of all bearings that have failed after a number of turns at rated torque [-].
   double failedBy(double turns) const;
 };
 
@@ -113,12 +113,12 @@ struct BearingLife
 struct DriveAge
 {
   double turns{};  ///< turns of the wave generator
-  /// Wear depth of both flanks of a pair, for loads > 0 and loads < 0 [m].
+  /// Wear depth of both flanks of a pair together, for loads > 0 and for loads < 0 [m].
   std::array<double, 2> flank_wear{};
   double interface_wear{};  ///< wear depth of outer race and rim [m]
   double grease{};          ///< used share of the grease's life; 1: a change is due [-]
   double flaw_depth{};      ///< depth of the deepest crack at a tooth root; 0: none [m]
-  double bearing_turns{};   ///< turns at rated torque that wear the wave generator's bearing as much
+  double bearing_turns{};   ///< turns at rated torque that wear the wave generator's bearing as much as the use
   std::array<double, STRESS_PLACES> fatigue{};  ///< Miner's sum of the flexspline by place; 1: broken [-]
   double filling_factor{ 1.0 };  ///< rate of wear in the current filling of grease over the drive's median [-]
 
@@ -129,7 +129,7 @@ struct DriveAge
 };
 
 /// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-].
-/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2; 0.25 is about half their logarithm.
+/// Assumption: repeated wear tests of one pairing of materials differ by 1.3 to 2 times; 0.25 is about half of ln 1.6.
 constexpr double RATE_SCATTER = 0.25;
 
 /// Standard deviation of the logarithm of the transition's strength relative to that of the tooth space [-]. The stress
@@ -137,7 +137,7 @@ constexpr double RATE_SCATTER = 0.25;
 /// (docs/life.md).
 constexpr double TRANSITION_SCATTER = 0.3;
 
-/// Differences of one drive from the nominal drive, which cannot be measured from outside.
+/// Differences of one drive from the nominal drive. They cannot be measured from outside the drive.
 struct UnitVariation
 {
   double flank_factor{ 1.0 };      ///< flank wear over that of the nominal drive [-]
@@ -175,7 +175,7 @@ enum class EndOfLife
   INTERFACE_WEAR,
   ROOT_CRACK,
   BEARING,
-  TOOTH_SPACE_FATIGUE,  // followed by the fatigue of the other places, in their order
+  TOOTH_SPACE_FATIGUE,  // followed by the fatigue of the other places of the flexspline, in the order of StressPlace
   TRANSITION_FATIGUE,
   FLANGE_FATIGUE
 };
@@ -196,8 +196,8 @@ inline const char* nameOf(const std::optional<EndOfLife>& end) noexcept
   return end ? NAMES[static_cast<std::size_t>(*end)] : "still in use";
 }
 
-/// Draws a drive at random: log-normal factors of wear and strength, and the bearing's life from the catalogue's
-/// Weibull distribution.
+/// Draws a drive at random: log-normal factors of wear, spall growth and strength, and the bearing's life from the
+/// Weibull distribution of the catalogue.
 template <class Engine>
 UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife& bearing, Engine& engine)
 {
@@ -215,8 +215,8 @@ UnitVariation drawVariation(const LifeParameters& parameters, const BearingLife&
   return variation;
 }
 
-/// Severity of the bearing's spall [-]: 0 up to `bearing_life`, 1 at the end of use. In between it is quadratic in the
-/// turns, because a larger spall grows faster (assumption).
+/// Severity of the bearing's spall [-]: 0 up to `bearing_life`, 1 at the end of use, in between quadratic in the turns,
+/// because a larger spall grows faster (assumption). `bearing_turns`: DriveAge::bearing_turns.
 inline double spallSize(const UnitVariation& variation, double bearing_turns)
 {
   const double grown = (bearing_turns / variation.bearing_life - 1.0) / variation.spall_growth;

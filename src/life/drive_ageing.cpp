@@ -16,7 +16,7 @@ namespace
 enum Entry
 {
   TURNS,
-  FLANK,  // for loads > 0, followed by the other direction
+  FLANK,  // for loads > 0, followed by loads < 0
   INTERFACE = FLANK + 2,
   GREASE,
   FLAW,
@@ -121,8 +121,8 @@ DriveAge DriveAgeing::rates(const UnitVariation& variation, const DriveAge& age)
     const double turns = phase.turns();
     time += phase.duration;
     rate.turns += turns;
-    // Both surfaces of a pair have equal force and sliding, but each loses its own depth. The sign of the load selects
-    // the flank.
+    // The factor 2 is for both surfaces of a pair, which have equal force and sliding and each lose a depth. The sign
+    // of the load selects the flank.
     rate.flank_wear[phase.load_torque < 0.0 ? 1 : 0] +=
         turns * 2.0 * variation.flank_factor * grease_factor *
         archardDepth(life.flank_wear_coefficient, revolution_load.flank_sliding, flank_area);
@@ -183,7 +183,7 @@ std::optional<EndOfLife> DriveAgeing::ended(const UnitVariation& variation, cons
 DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours, double every, bool grease_changes,
                                     const std::function<void(double, const DriveAge&)>& visit) const
 {
-  constexpr double TOLERANCE = 1e-8;  // error of a step, as a share of the limits
+  constexpr double TOLERANCE = 1e-8;  // largest error of a step, as a share of the limits [-]
   constexpr int BISECTIONS = 50;
   namespace odeint = boost::numeric::odeint;
   Scale scale(parameters_, variation);
@@ -214,7 +214,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
     const bool stopping = stops(end);
     if (stopping)
     {
-      // Finds the first instant at which an event occurs. A step is so short that it has at most one event.
+      // Bisects to the first instant of an event: end of use or hours, change of grease. A step has at most one event.
       for (int i = 0; i < BISECTIONS; ++i)
       {
         const double middle = 0.5 * (begin + end);

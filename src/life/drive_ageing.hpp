@@ -15,7 +15,7 @@ namespace hjt
 /// The nominal drive: all factors are 1, and its bearing has the median life.
 UnitVariation nominalDrive(const LifeParameters& parameters);
 
-/// Integrates the laws of ageing over years of a duty cycle. The tooth model gives the loads of one turn.
+/// Integrates the laws of ageing over years of a duty cycle. `load_map` gives the loads of one turn by the tooth model.
 class DriveAgeing
 {
 public:
@@ -24,10 +24,10 @@ public:
   {
   }
 
-  /// Rates of ageing for a given age [1/h].
+  /// Change of each field of `age` in an hour, at this age of the drive.
   DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
 
-  /// Rates of Miner's sums of a new drive [1/h]; `strength`: fatigue strength over the median.
+  /// Increase of a new drive's Miner's sums by place [1/h]. `strength`: fatigue strength over the median of all drives.
   std::array<double, STRESS_PLACES> fatigueRates(double strength) const;
 
   /// The first limit that a drive of this age has reached; empty: none.
@@ -35,14 +35,14 @@ public:
 
   struct Life
   {
-    double hours{};                ///< hours of use until the end of use, or the requested hours
+    double hours{};                ///< hours of use until the end of use or, without an end, the requested hours
     std::optional<EndOfLife> end;  ///< reason for the end of use; empty if the drive is still in use
-    DriveAge age;
+    DriveAge age;                  ///< age after these hours
   };
 
   /// Ages a new drive for `hours`, or until the end of use. The function calls `visit(hours, age)` at every multiple of
-  /// `every` hours and at the end. `grease_changes`: the grease is changed when due. The integrator is the Runge-Kutta
-  /// method of Dormand and Prince with step control, tolerance 1e-8 of the limits.
+  /// `every` hours and at the end. `grease_changes`: whether the grease is changed when due. The integrator is the
+  /// Runge-Kutta method of Dormand and Prince with step control, tolerance 1e-8 of the limits.
   Life live(const UnitVariation& variation, double hours, double every, bool grease_changes,
             const std::function<void(double, const DriveAge&)>& visit) const;
 

@@ -10,12 +10,12 @@ namespace hjt
 {
 namespace
 {
-constexpr double LOAD_STEPS = 16.0;         // steps of load up to the rated torque
+constexpr double LOAD_STEPS = 16.0;         // number of steps of load up to the rated torque
 constexpr double NO_LOAD = 64.0;            // index of the node without load
-constexpr double TEMPERATURE_CLASS = 10.0;  // [K]
+constexpr double TEMPERATURE_CLASS = 10.0;  // distance of the nodes in temperature [K]
 
 /// The grid nodes below and above a value, with the share of the upper node. A value that equals a node within rounding
-/// counts only for this node; NaN counts for the first node.
+/// errors counts only for this node. NaN counts for the first node.
 struct Share
 {
   Share(double place, std::size_t nodes) noexcept

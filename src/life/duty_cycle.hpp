@@ -16,7 +16,7 @@ namespace hjt
 /// A period with constant speed, load and temperature.
 struct DutyPhase
 {
-  double duration{};     ///< > 0 [s]
+  double duration{};     ///< length of the period, > 0 [s]
   double motor_speed{};  ///< speed of the motor, of which only the magnitude counts [rad/s]
   double load_torque{};  ///< load torque at the output [N.m]
   double temperature{};  ///< temperature of the drive [degC]
@@ -53,7 +53,7 @@ struct DutyCycle
     return duty;
   }
 
-  /// Whether the file can be read and its first line has the columns of a duty cycle.
+  /// Whether the file can be read and has a first line with the columns of a duty cycle.
   static bool isOne(const std::string& path)
   {
     try
@@ -89,14 +89,14 @@ private:
 /// Use of a drive: time and turns by load and temperature, in storage of fixed size.
 ///
 /// The grid has a node at every sixteenth of the rated torque, up to four times the rated torque in both directions,
-/// and at every 10 K. A period of use is divided among the four nodes around it such that time, turns, mean load and
-/// mean temperature are conserved.
+/// and at every 10 K. The class divides a period of use among the four nodes around its load and temperature such that
+/// time, turns, mean load and mean temperature are conserved.
 class UsageHistory
 {
 public:
   explicit UsageHistory(const LifeParameters& life);
 
-  /// Reads the use from a file that `text` wrote, or from any other duty cycle. @throws InputError.
+  /// Reads the use from a file with the result of `text`, or from any other duty cycle. @throws InputError.
   UsageHistory(const LifeParameters& life, const std::string& path);
 
   void clear() noexcept;
@@ -118,7 +118,7 @@ private:
   struct Node
   {
     double time{};    // [s]
-    double travel{};  // angle of the wave generator [rad]
+    double travel{};  // travel of the wave generator in both directions [rad]
   };
 
   double load_step_;  // distance of the nodes in load [N.m]

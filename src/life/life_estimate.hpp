@@ -20,7 +20,7 @@ struct LifeEstimate
   double turns{};            ///< turns of the wave generator so far
   RemainingHours remaining;  ///< remaining life of a drive that is still in use, if its use continues in the same way
   std::array<double, ENDS_OF_LIFE> used{};  ///< used share of each limit for the nominal drive [-]
-  double grease_used{};                     ///< used share of the grease's life since the last due change [-]
+  double grease_used{};                     ///< used share of the life of the present grease [-]
 
   double usedOf(EndOfLife limit) const { return used[static_cast<std::size_t>(limit)]; }
 
@@ -42,9 +42,9 @@ public:
   {
   }
 
-  /// Estimates the remaining life. `record`: use so far, with at least one turn; `assessment`: that of the last
+  /// Estimates the remaining life. `record`: use so far, with at least one turn; `assessment`: assessment of the last
   /// compared window, null: none; `reference_hours`: hours of use at which the sound reference was learned, 0 for a new
-  /// drive [h]. A load that was in no earlier record takes seconds.
+  /// drive [h]; `read`: measured wear. The computation takes seconds for each load that was in no earlier record.
   /// @throws ParameterError if the ring has no equilibrium at one of the loads.
   LifeEstimate estimate(const UsageHistory& record, const Assessment* assessment, double reference_hours,
                         const ReadWear& read = {})
@@ -80,9 +80,9 @@ public:
   }
 
 private:
-  static constexpr int POSITIONS = 8;  // positions of the wave generator in a tooth pitch
-  static constexpr int STRETCHES = 400;
-  static constexpr double GREASE_CHANGES_AHEAD = 20.0;
+  static constexpr int POSITIONS = 8;                   // positions of the wave generator in a tooth pitch
+  static constexpr int STRETCHES = 400;                 // number of intervals of the future use
+  static constexpr double GREASE_CHANGES_AHEAD = 20.0;  // length of the future use, in lives of the grease
   static constexpr bool GREASE_IS_CHANGED = true;
 
   AgeingParameters parameters_;

@@ -17,7 +17,7 @@ namespace
 class Response
 {
 public:
-  /// `scale`: factor on the signatures' changes for this drive.
+  /// `scale`: factor on the signatures' changes for the drive of the window.
   Response(const SignatureSet& set, const OperatingPoint& point, FaultKind kind, ScalarIndicator indicator,
            double scale) noexcept
   {
@@ -32,7 +32,7 @@ public:
       {
         continue;
       }
-      OperatingPoint to_and_fro = point;  // if the load has both signs, the direction of motion does not matter
+      OperatingPoint to_and_fro = point;  // the direction does not matter for wear, which needs loads of both signs
       to_and_fro.direction = signature.motion.direction;
       const double alike = likeness(signature.motion, to_and_fro);
       const double weight = OTHER_MOTION * OTHER_MOTION + alike;
@@ -121,7 +121,7 @@ double whereIs(double value, double farthest, Of&& of) noexcept
 
 WearReading readWear(const WindowResidual& residual, const OperatingPoint& point, const SignatureSet& set) noexcept
 {
-  constexpr double FARTHEST = 3.0;  // severity
+  constexpr double FARTHEST = 3.0;  // largest severity that a reading can have [-]
   constexpr std::array STIFFNESSES{ ScalarIndicator::TORSIONAL_STIFFNESS, ScalarIndicator::SECOND_STIFFNESS };
   constexpr std::size_t PLAY = indexOf(ScalarIndicator::LOST_MOTION);
   WearReading reading;

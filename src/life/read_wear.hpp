@@ -24,7 +24,7 @@ constexpr double shareOf(double found, double runs) noexcept
 }
 
 /// Share of drives whose wear of a kind the assessment finds [-], counted over check-ups and runs at work with the
-/// severities 0.2 and 0.5. 0: never, for example spalls.
+/// severities 0.2 and 0.5. For kinds of faults that are no wear of teeth, interface or grease the share is 0.
 constexpr double detectionShare(FaultKind kind) noexcept
 {
   switch (kind)
@@ -50,25 +50,25 @@ constexpr double DETECTED_SPREAD = 0.3;
 constexpr double RIGHT_CAUSE = shareOf(assessment_counts::RIGHT_CAUSES, assessment_counts::ALARMS);
 constexpr double IN_SET = shareOf(assessment_counts::IN_SETS, assessment_counts::ALARMS);
 
-/// Share of check-ups and runs at work of sound gears that end with an alarm.
+/// Share of check-ups and runs at work of sound gears that end with an alarm [-].
 constexpr double FALSE_ALARMS = shareOf(assessment_counts::SOUND_ALARMS, assessment_counts::SOUND_RUNS);
 
 /// Errors of WearReadings for flanks and interface, from lives with signals (seeds 11 and 421 of lab/lives_judged.py).
-/// In a motion similar to that of a signature, the gain for the flanks differs by 0.06 between gears.
+/// In a motion similar to that of a signature, the gain (reading over wear) of the flanks differs by 0.06 among gears.
 constexpr ReadingErrors FLANK_READING{ 0.06, 0.012, 0.005, 0.03 };
 constexpr ReadingErrors INTERFACE_READING{ 0.2, 0.08, 0.015, 0.03 };
-/// Standard deviation of the gain [-] in a motion unlike those of the signatures: the `motion_error` of the signatures.
+/// Standard deviation of the gain in a motion unlike that of any signature [-]: motion_error of the SignatureSet.
 constexpr double OTHER_MOTION_GAIN = 0.25;
-/// Mean shortfall of a flank reading as a severity [-], because the first flank wear reduces the preload and opens no
-/// play. The standard deviation between drives is FLANK_READING.offset.
+/// Mean of true flank wear minus reading, as a severity [-]: the first wear reduces the preload and opens no play. The
+/// standard deviation between drives is FLANK_READING.offset.
 constexpr double FLANK_SHORT = 0.012;
-/// Bias of the interface's reading by flank wear, relative to the flanks' reading: mean and standard deviation [-].
+/// True wear of the interface minus its reading, over the flanks' reading: mean and standard deviation over drives [-].
 constexpr double INTERFACE_SHORT = 0.55;
 constexpr double FLANK_IN_INTERFACE = 0.2;
 
 }  // namespace assessment_errors
 
-/// Wear of a drive since its reference was learned, measured by windows, as severities of faults. Values below the
+/// Wear of a drive since its reference was learned, estimated from windows, as severities of faults. A wear below the
 /// resolution may be negative.
 struct WearReading
 {
@@ -81,25 +81,25 @@ struct WearReading
   double lost_motion_slope{};
 };
 
-/// Measures the wear from the mean of the last windows, independently of the verdict.
+/// Estimates the wear from the mean of the last windows, independently of the verdict.
 ///
 /// Law:   w(s_f) = d_w,   sum over K1, K2 of (k(s_f) + l_k(s_i)) / k_0 = sum of d_k / k_0
 /// where  w, k     change of the lost motion and of a stiffness by tooth wear, as functions of its severity s_f
 ///        l_k      change of a stiffness by interface wear, as a function of its severity s_i. All three are means over
 ///                 the signatures, weighted by the similarity of the motions, and linear between severities
 ///        d, k_0   difference of the window from the reference; stiffness of the sound drive
-/// Only tooth wear counts for the lost motion, because other wear has less than a tenth of its effect. The law uses the
-/// sum over both stiffnesses, because the share of each in the softening depends on the largest load.
+/// Only tooth wear counts for the lost motion, because other wear has less than a tenth of the effect of tooth wear.
+/// The law adds both stiffnesses, because the share of K1 and K2 in the softening depends on the largest load.
 WearReading readWear(const WindowResidual& residual, const OperatingPoint& point, const SignatureSet& set) noexcept;
 
-/// A measurement of the wear with the hours of use at its time.
+/// A reading of the wear with the hours of use at the time of the reading.
 struct DatedReading
 {
   double hours;
   WearReading reading;
 };
 
-/// All measurements of the wear of a drive.
+/// All readings of the wear of a drive.
 struct ReadWear
 {
   std::vector<DatedReading> readings;    ///< ordered by hours
@@ -144,7 +144,7 @@ inline WearTrends trendsOf(const ReadWear& read, const NominalUse& use, const Fa
     const double at_end = last.flank + assessment_errors::FLANK_SHORT +
                           (read.lost_motion_limit - last.lost_motion) / last.lost_motion_slope;
     const Usage now = use.until(read.readings.back().hours);
-    // A severity is the mean wear of both flanks, but the limit concerns the more worn flank.
+    // The severity of tooth_wear is the mean wear of both flanks, but the limit is for the more worn flank.
     trends.flank_depth = now.mean_flank > 0.0 ? flank * now.flank_wear / now.mean_flank : flank;
     trends.reading_at_end = use.flank().of(at_end * flank) / flank;
   }

@@ -12,12 +12,12 @@ namespace hjt
 struct ReadingErrors
 {
   double gain;         ///< standard deviation of the relative gain error, which is constant for a drive [-]
-  double offset;       ///< standard deviation of the offset as a severity, which is constant for a drive [-]
+  double offset;       ///< standard deviation of the offset as a severity; the offset is constant for a drive [-]
   double noise;        ///< constant part of a reading's noise, as a severity: standard deviation [-]
   double noise_share;  ///< part of a reading's noise in proportion to the reading: standard deviation over reading [-]
 };
 
-/// Reading of wear, and wear of the nominal drive after equal use, as severities of equivalent depths (LoadFeedback).
+/// Severities of equivalent wear depths (LoadFeedback): reading of a drive, and nominal drive after equal use [-].
 struct WearPoint
 {
   double nominal;
@@ -27,7 +27,7 @@ struct WearPoint
 /// Rate of wear of a drive, from readings over its use.
 ///
 /// Law:   r_i = g u_i + d + n_i,   g = f (1 + b),   n_i^2 = a^2 + (c r_i)^2 + (v (r - r_i))^2
-/// where  u, r  severities of nominal drive and reading of a WearPoint, without index those of the last one
+/// where  u, r  severities of nominal drive and reading of WearPoint i; r without index: of the last WearPoint
 ///        f     wear of the drive over that of the nominal drive;  b, d  errors of gain and offset, normal about 0
 ///        a, c  ReadingErrors::noise, noise_share;  v  RATE_SCATTER, because the rate may have changed since reading i
 /// The likelihood is integrated over d; g is normal.
@@ -67,7 +67,7 @@ public:
     return -0.5 * (off * off / variance + std::log(variance));
   }
 
-  /// Severity of the nominal drive at which a drive with the factor f will have the reading `reading`. `by_gain`,
+  /// Severity of the nominal drive's wear when a drive with the factor f will have the reading `reading`. `by_gain`,
   /// `by_offset`: standard normal deviates of the errors of gain and offset.
   double nominalAt(double reading, double factor, double by_gain, double by_offset) const noexcept
   {
@@ -98,7 +98,7 @@ struct WearTrends
 };
 
 /// Wear changes the loads that cause it. The equivalent wear depth is the depth that equal use would cause with the
-/// loads of the new drive. This class gives it as a function of the real depth, linear between and beyond nodes.
+/// loads of the new drive. This class gives the equivalent depth as a function of the real depth, linear between nodes.
 class LoadFeedback
 {
 public:
