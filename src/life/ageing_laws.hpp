@@ -129,7 +129,7 @@ struct DriveAge
 };
 
 /// Standard deviation of the logarithm of a drive's rate of wear from one filling of grease to the next [-].
-/// Assumption: repeated wear tests of one pairing of materials differ by 1.3 to 2 times; 0.25 is about half of ln 1.6.
+/// Assumption: repeated wear tests of one pairing differ by factors of 1.3 to 2, of whose logarithm 0.25 is about half.
 constexpr double RATE_SCATTER = 0.25;
 
 /// Standard deviation of the logarithm of the transition's strength relative to that of the tooth space [-]. The stress

@@ -32,7 +32,7 @@ double hoursUntil(const FutureLoad& future_load, double left, Of&& of)
   return stretch > 0.0 ? future_load.step * (begin + (left - of(*before)) / stretch) : HUGE_VAL;
 }
 
-/// Miner's sum at a place after a use. @param strength logarithm of (strength at the place / median strength)
+/// Miner's sum at a place after the use `usage` [-]. `strength`: ln(strength at the place / median strength).
 double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcept
 {
   constexpr double LAST = STRENGTHS - 1;
@@ -46,7 +46,7 @@ double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcep
 }
 
 /// Variance of ln(future mean rate of wear / past mean rate), if the logarithms of the rates of single fillings of
-/// grease have unit variance. The current filling belongs to past and future. @param so_far,ahead numbers of fillings
+/// grease have unit variance. The current filling is in both. `so_far`, `ahead`: number of past and future fillings.
 double changeOfRate(double so_far, double ahead) noexcept
 {
   if (ahead <= 0.0)
@@ -75,8 +75,8 @@ struct Wear
   double found;
 };
 
-/// Probability density of an estimated severity for a log-normal error about the true `severity`, over the density of
-/// any estimate in SEVERITY_RANGE [-].
+/// Probability density of an estimated severity, log-normal about the true `severity`, over a uniform density on
+/// SEVERITY_RANGE [-].
 double estimateDensity(const Alternative& estimate, double severity) noexcept
 {
   if (severity <= 0.0 || estimate.severity <= 0.0)
@@ -141,7 +141,7 @@ RemainingLife::RemainingLife(const Parameters& parameters)
   }
 }
 
-/// Strength at each place below which the use so far would have broken the drive: ln(strength / median).
+/// Strength at each place below which the use so far would have broken the drive, as ln(strength / median strength).
 RemainingLife::Weakest RemainingLife::weakestLeft(const Usage& so_far) const noexcept
 {
   Weakest weakest{};
@@ -177,8 +177,8 @@ RemainingLife::Drive RemainingLife::drive(const Point& point, const Usage& so_fa
   }
   drive.variation.spall_growth =
       parameters_.spall_growth * factorBelow(HUGE_VAL, parameters_.spall_spread, point[SPALL_GROWTH]);
-  // -ln of the Weibull share of bearings without a spall: `least` if the life would end now, `whole` for a first spall
-  // now.
+  // -ln of the share of bearings without a spall after a number of turns (Weibull). `whole`: after all turns so far;
+  // `least`: after the turns at which a spall began whose growth ends the use now.
   const auto lasting = [this](double turns) { return std::pow(turns / bearing_.scale, bearing_.shape); };
   const double least = lasting(so_far.bearing_turns / (1.0 + drive.variation.spall_growth));
   const double whole = lasting(so_far.bearing_turns);

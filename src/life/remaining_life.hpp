@@ -16,14 +16,14 @@
 
 namespace hjt
 {
-constexpr double FARTHEST = 30.0;  // largest normal deviate that is used; doubles hold its probability
+constexpr double FARTHEST = 30.0;  // largest normal deviate in the computations, whose probability a double holds [-]
 
 inline double squared(double value)
 {
   return value * value;
 }
 
-inline double normalShare(double deviation) noexcept
+inline double normalShare(double deviation) noexcept  ///< probability of a smaller normal deviate [-]
 {
   return 0.5 * std::erfc(-deviation / std::sqrt(2.0));
 }
@@ -36,7 +36,7 @@ inline double normalBelow(double most, double share) noexcept
 }
 
 /// Quantile for `share` of a log-normal factor with median 1, truncated above at `ends_at`, because a larger factor
-/// would have ended the drive. `spread`: standard deviation of the logarithm.
+/// would have ended the use of the drive. `spread`: standard deviation of the factor's logarithm.
 inline double factorBelow(double ends_at, double spread, double share) noexcept
 {
   return spread > 0.0 ? std::exp(spread * normalBelow(std::log(ends_at) / spread, share)) : 1.0;
@@ -48,12 +48,12 @@ inline double normalAt(double share) noexcept
   return normalBelow(FARTHEST, share);
 }
 
-/// Tabulated distribution of a drive's factor of wear relative to the nominal drive.
+/// Tabulated distribution of the wear of a drive over the wear of the nominal drive (the factor of wear).
 class FactorTable
 {
 public:
   /// Computes the distribution, given the readings of `trend`. `spread`: prior standard deviation of the logarithm;
-  /// `ends_at`: factor at which the distribution is truncated, because a larger one would have ended the drive.
+  /// `ends_at`: largest factor, because a larger factor would have ended the use of the drive.
   void given(const WearTrend& trend, double spread, double ends_at) noexcept
   {
     constexpr double REACH = 6.5;  // range of the table, in standard deviations of the logarithm
@@ -86,7 +86,7 @@ public:
     std::transform(reached_.begin(), reached_.end(), reached_.begin(), [sum](double value) { return value / sum; });
   }
 
-  double drawn(double share) const noexcept
+  double drawn(double share) const noexcept  ///< quantile of the factor for `share` [-]
   {
     if (!is_read_)
     {
@@ -110,9 +110,9 @@ private:
 };
 
 /// Number of fatigue strengths in the table Usage::fatigue. The strengths are evenly spaced in the logarithm, and the
-/// logarithm of the fatigue is interpolated linearly.
+/// logarithm of the fatigue is interpolated linearly over the logarithm of the strength.
 constexpr std::size_t STRENGTHS = 49;
-constexpr double STRENGTH_REACH = 1.5;  // range of the logarithm on either side of the median
+constexpr double STRENGTH_REACH = 1.5;  // range of ln(strength / median strength) on either side of 0 [-]
 
 /// Fatigue strength of entry i of the table Usage::fatigue, over the median of all drives [-].
 inline double strengthAt(std::size_t i)
@@ -126,8 +126,8 @@ struct Usage
   double flank_wear{};      ///< wear of the nominal drive's more worn flank, leading or trailing [m]
   double mean_flank{};      ///< mean wear of the nominal drive's two flanks: half of the growth of the play [m]
   double interface_wear{};  ///< interface wear of the nominal drive [m]
-  double bearing_turns{};   ///< number of turns at rated torque that wear the bearing as much
-  /// Miner's sums by fatigue strength and place; the sum of a drive is not in proportion to that of the nominal drive.
+  double bearing_turns{};   ///< number of turns at rated torque that wear the bearing as much as the use
+  /// Miner's sums by fatigue strength and place. The ratio of two strengths does not give the ratio of their sums.
   std::array<std::array<double, STRESS_PLACES>, STRENGTHS> fatigue{};
   double fillings{};  ///< number of used fillings of grease [-]
 
@@ -150,10 +150,10 @@ struct Usage
   }
 };
 
-/// Future use from now on. After the last interval, the use of the last interval repeats without end.
+/// Future use from now on, in equal intervals. After the last interval, the use of this interval repeats without end.
 struct FutureLoad
 {
-  double step{};             ///< [h]
+  double step{};             ///< length of an interval [h]
   std::vector<Usage> usage;  ///< entry i: use in the next i times `step` hours; at least two entries
   /// Equivalent wear depths (LoadFeedback) of flanks and interface at the end of life [m]; 0: limits of the parameters.
   double flank_limit{};
@@ -182,12 +182,12 @@ struct RemainingHours
   double crps(double hours) const noexcept;
 
   std::array<double, BINS> probability{};        ///< probability that the end is in each bin [-]
-  std::array<double, SHARES.size()> quantile{};  ///< hours after which the shares SHARES of all drives have ended [h]
+  std::array<double, SHARES.size()> quantile{};  ///< hours in which the shares SHARES of drives reach the end [h]
   std::array<double, CAUSES.size()> by_cause{};  ///< probability of each cause of the end, in the order of CAUSES [-]
 };
 
-/// Whether an assessment replaces an earlier one. It does if it compared its window, with one exception: of two
-/// assessments at level OK, one that does not show play does not replace one that shows play.
+/// Whether an assessment replaces the assessment `before`. It does if it compared its window, with one exception: at
+/// level OK, an assessment that does not show play does not replace an assessment at level OK that shows play.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&
@@ -197,10 +197,10 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 
 /// Distribution of the remaining life over the unknown variation of one drive.
 ///
-/// A particle is a drive with its own factors of wear, bearing life and fatigue strength. They are drawn from the
-/// spread of literature and catalogue (log-normal; the Weibull distribution of the bearing's life), truncated by the
-/// condition that the use so far has not ended the drive. The points are a Sobol sequence. Use ages all particles by
-/// the same laws. An assessment weights each particle by the likelihood of the report, given the particle's wear as
+/// A particle is a drive with its own factors of wear, bearing life and fatigue strength. Their distributions are from
+/// literature and catalogue (log-normal; Weibull for the bearing's life), truncated by the condition that the use so
+/// far has not ended the use of the drive. The random numbers are a Sobol sequence. Use ages all particles by the same
+/// laws. An assessment weights each particle by the likelihood of this assessment, given the particle's wear as
 /// severities of faults:
 ///
 ///   no fault found   prod_k (1 - D_k(s_k)); 1 for a window whose load did not change sign, which shows little wear
@@ -212,24 +212,24 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 /// named spall); r: share of cases in which the reported set lacks the cause; q: share of false alarms
 /// (life/read_wear.hpp). Only the last assessment counts, because the errors of a drive's assessments persist.
 ///
-/// For wear with readings (WearTrends) the factor of a particle is drawn from its distribution given the readings. The
-/// assessment then informs about spalls only: D_k f / u of wear is 1. The future rate of wear differs from the past
-/// rate by a log-normal factor, because each filling of grease has a different rate (RATE_SCATTER). The current filling
-/// continues until its end.
+/// For wear with readings (WearTrends) the factor of wear of a particle has the distribution given the readings
+/// (FactorTable). The assessment then informs about spalls only: D_k f / u of wear is 1. The future rate of wear
+/// differs from the past rate by a log-normal factor, because the rate is different in each filling of grease
+/// (RATE_SCATTER). The current filling continues until its end.
 class RemainingLife
 {
 public:
   explicit RemainingLife(const Parameters& parameters);
 
-  /// Remaining life of a drive that is still in use after the use `so_far`. `assessment`: last valid assessment, null:
-  /// none; `at_reference`: use at which the sound reference of the assessment was learned, 0 for a new drive. The
-  /// function does not allocate.
+  /// Remaining life of a drive that is still in use after the use `so_far`. `assessment`: last assessment that compared
+  /// its window, null: none; `at_reference`: use at which the sound reference of the assessment was learned, 0 for a
+  /// new drive. The function does not allocate.
   RemainingHours remaining(const Usage& so_far, const FutureLoad& future_load, const Assessment* assessment,
                            const Usage& at_reference, const WearTrends& trends = {}) noexcept;
 
 private:
   static constexpr std::size_t PARTICLES = 4096;
-  // share of the particles with a spall, which are the first ones; independent of the probability of spalls [-]
+  // share of particles with a spall, the first in the sequence, whatever the probability of a spall is [-]
   static constexpr double SPALLED = 0.25;
   enum Nature
   {
@@ -251,7 +251,7 @@ private:
   {
     UnitVariation variation;
     std::array<double, STRESS_PLACES> strength;  // logarithms of the strengths over the median
-    double log_weight;  // logarithm of the probability that bearing and flexspline last, with or without a spall
+    double log_weight;  // log of the probability that bearing, spalled or not, and flexspline outlast the use so far
     double rate_ahead;  // standard normal deviate of the future rate of wear
     double flank_end;   // equivalent flank wear (LoadFeedback) at the end of life [m]
   };
@@ -323,10 +323,10 @@ public:
   const LoadFeedback& flank() const { return flank_; }
   const LoadFeedback& interface() const { return interface_; }
 
-  /// Use of a drive in its first `hours` hours.
+  /// Use of a drive in the first `hours` hours of its life.
   Usage until(double hours) const
   {
-    // Mean factor of wear: grease of age g wears 1 + (factor - 1) g times as fast, with g linear in time.
+    // Grease of age g (used share of its life) makes wear 1 + (factor - 1) g times as fast. g is linear in time.
     const double age = grease_rate_ * hours;
     const double changes = grease_changes_ ? std::floor(age) : 0.0;
     const double left = age - changes;
@@ -349,7 +349,7 @@ public:
     return usage;
   }
 
-  /// Use after `now` hours, for a forecast over `hours` hours in `stretches` intervals.
+  /// Use that follows the first `now` hours, for a forecast over `hours` hours in `stretches` intervals.
   FutureLoad from(double now, double hours, int stretches) const
   {
     FutureLoad future_load;
@@ -369,11 +369,11 @@ private:
 
   static constexpr double SLOWEST = 1e-3;  // least rate of wear over that of the new drive, so that no rate is zero
 
-  /// Ratio of two rates; 1 for a use without wear.
+  /// Rate of wear over the rate `of` of the new drive, at least SLOWEST; 1 for a use without wear [-].
   static double share(double rate, double of) { return of > 0.0 ? std::max(rate / of, SLOWEST) : 1.0; }
 
   Usage hourly_;        // use in an hour with fresh grease
-  double grease_rate_;  // share of the grease's life in an hour
+  double grease_rate_;  // share of the grease's life that an hour uses [1/h]
   double grease_factor_;
   bool grease_changes_;
   LoadFeedback flank_;

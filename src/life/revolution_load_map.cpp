@@ -38,7 +38,7 @@ Cell cellOf(double value, double step, int stages)
   return { static_cast<std::size_t>(index), place - index };
 }
 
-/// Load with the larger magnitude of each pair of corresponding numbers.
+/// Loads whose numbers are the larger magnitudes of the corresponding numbers of `a` and `b`.
 RevolutionLoad larger(const RevolutionLoad& a, const RevolutionLoad& b)
 {
   return combined(a, b, [](double x, double y) { return std::max(std::abs(x), std::abs(y)); });

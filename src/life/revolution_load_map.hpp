@@ -20,7 +20,7 @@ namespace hjt
 {
 /// Creep of the outer race of the wave generator's bearing in the rim, and the slip between race and rim.
 ///
-/// The lobes press the race on the rim, and the race rolls in the rim. If it were held, its surface would slip with
+/// The lobes press the race on the rim, and the race rolls in the rim. If the race were held, its surface would slip by
 ///   q_i = l psi_i' - r eps_i + f - g_i                  [m/rad, per wave generator angle]
 /// where  l, psi_i'  contact.slip_lever [m]; rate of the chord's tilt at tooth i against the turning of the wave [-]
 ///        r, eps_i   bore radius [m]; strain of the rim at tooth i [-] (the race does not stretch)
@@ -48,8 +48,8 @@ public:
 private:
   struct Slip
   {
-    double rate;   // slip rate of a tooth [m/rad]
-    double force;  // normal force of a tooth [N]
+    double rate;   // rate q_i of the slip at a tooth [m/rad]
+    double force;  // normal force F_i at a tooth [N]
   };
 
   double lever_;        // lever of the slip [m]
@@ -74,7 +74,7 @@ public:
   RevolutionLoadAnalysis(const JointModel& joint, const SolverParameters& solver, const FlexsplineStress& stress,
                          const RaceCreep& creep, int positions);
 
-  /// Load of one turn of the wave generator under `load_torque` [N.m].
+  /// Loads of one turn of the wave generator under the load `load_torque` at the output [N.m].
   /// @throws ParameterError if the ring has no equilibrium.
   RevolutionLoad under(double load_torque);
 
@@ -84,11 +84,11 @@ private:
   FlexsplineStress flexspline_stress_;
   ToothStress tooth_stress_;
   RaceCreep race_creep_;
-  Eigen::VectorXd running_;  // derivatives of the teeth by the wave generator's angle
+  Eigen::VectorXd running_;  // derivatives of the tooth points by the wave generator angle [m/rad]
 };
 
-/// Loads of one turn as a function of load torque and wear. The tooth model computes the loads at some stages of wear;
-/// the interpolation between the stages is bilinear.
+/// Loads of one turn as a function of load torque and wear. The tooth model computes the loads at STAGES stages of each
+/// kind of wear. The interpolation between the stages is bilinear.
 class RevolutionLoadMap
 {
 public:
@@ -99,11 +99,12 @@ public:
   /// @throws ParameterError if the ring has no equilibrium.
   void cover(const DutyCycle& duty, const std::function<void(double)>& progress);
 
-  /// Load of one turn at a load torque [N.m] that `cover` computed and a wear [m]. Larger wear counts as its limit.
+  /// Loads of one turn at a load torque [N.m] that `cover` computed, and at wear depths [m]. A depth above its limit
+  /// counts as the limit.
   RevolutionLoad at(double load_torque, double flank_wear, double interface_wear) const;
 
-  /// Largest error of the interpolation, compared with the tooth model halfway between stages, over the largest value
-  /// of the quantity at any load [-]. The function is slow.
+  /// Largest error of the interpolated loads, compared with the tooth model halfway between stages, over the largest
+  /// value of each quantity at any load [-]. The function is slow.
   double largestError() const;
 
 private:
@@ -119,8 +120,8 @@ private:
   FlexsplineStress stress_;
   RaceCreep creep_;
   int positions_;
-  double flank_step_;               // difference between stages [m]
-  double interface_step_;           // difference between stages [m]
+  double flank_step_;               // difference of flank wear between stages [m]
+  double interface_step_;           // difference of interface wear between stages [m]
   std::map<double, Stages> nodes_;  // by load torque
 };
 }  // namespace hjt
