@@ -74,7 +74,7 @@ void DynamicRing::evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, d
   power_.supplied = dashpots.supplied + contact.force.dot(growth_) +
                     model_.motor.rippled(drive_.motor_torque, position_.wave_generator_angle) * motor_speed -
                     drive_.load_torque * output_speed;
-  // On a driven body, the reaction of its drive balances all other forces.
+  // On a driven body, the force that prescribes its motion balances all other forces.
   for (const int k : { waveGenerator(), output() })
   {
     power_.supplied -= driven(k) ? force_[k] * v[k] : 0.0;

@@ -13,7 +13,7 @@
 namespace hjt
 {
 /// Calls `visit(row, column, value)` for every entry of a tangent over all coordinates, in an order that does not
-/// depend on the values. It excludes the entries of the cup, which form a dense matrix of rank one.
+/// depend on the values. The function omits the entries of the cup, which form a dense matrix of rank one.
 template <class Visitor>
 void visitEntries(const RingTangent& tangent, Visitor&& visit)
 {
@@ -52,7 +52,7 @@ void visitEntries(const RingTangent& tangent, Visitor&& visit)
   visit(output, output, tangent.output_stiffness);
 }
 
-/// Amplitude of the wave, which grows at constant speed. A step of the integration must end where this speed changes.
+/// Amplitude of the wave, which grows at constant speed. A step of the integration must end when this speed changes.
 struct WaveGrowth
 {
   double begin{};      ///< time of the beginning [s]
@@ -62,14 +62,14 @@ struct WaveGrowth
   double at(double time) const noexcept { return amplitude + speed * (time - begin); }  ///< amplitude at a time [m]
 };
 
-/// External drive of a dynamic ring. A driven body has a prescribed constant speed.
+/// Torques and prescribed motion of a dynamic ring. A driven body keeps a constant speed, whatever the torques are.
 struct RingDrive
 {
   WaveGrowth wave;
   bool wave_generator_driven{};
   bool output_driven{};
-  double motor_torque{};  ///< torque on a wave generator that is not driven [N.m]
-  double load_torque{};   ///< torque on an output that is not driven; > 0 resists positive motion [N.m]
+  double motor_torque{};  ///< torque on the wave generator if this is not driven [N.m]
+  double load_torque{};   ///< torque on the output if this is not driven; > 0 resists positive motion [N.m]
 };
 
 /// Powers at one instant [W].
@@ -81,12 +81,11 @@ struct RingPower
 
 /// The ring with a mass at every tooth, and wave generator and circular spline as two more bodies: M q'' = f(q, q', t).
 ///
-/// Coordinates q: 2 N of the tooth points [m], wave generator angle, output angle [rad]; M is diagonal. The state is q
-/// followed by q', 4 N + 4 values. Forces are those of the ring's elements and dashpots, viscous friction of motor and
-/// load, and gravity on the load. Dry friction is neglected.
-///
-/// `pairTeeth` assigns spaces to teeth between steps. The right-hand side is therefore a fixed function of state and
-/// time within a step. External solvers use `rates` and `jacobian`.
+/// Coordinates q: x and y of the N tooth points [m], wave generator angle and output angle [rad]. M is diagonal, with
+/// masses [kg] and inertias [kg.m^2]. The state is q followed by the speeds q', 4 N + 4 values. The force f is that of
+/// the ring's elements and dashpots, viscous friction of motor and load, and gravity on the load, without dry friction.
+/// `pairTeeth` assigns spaces to teeth between steps, so that q'' is a fixed function of state and time within a step.
+/// External solvers use `rates` and `jacobian`.
 class DynamicRing
 {
 public:
@@ -101,14 +100,14 @@ public:
   const RingDrive& drive() const noexcept { return drive_; }
   void setWave(const WaveGrowth& wave) noexcept { drive_.wave = wave; }
   bool driven(int coordinate) const noexcept { return inverse_mass_[coordinate] == 0.0; }
-  const Eigen::VectorXd& mass() const noexcept { return mass_; }                 ///< [kg], [kg.m^2]
-  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 1 / mass, or 0 if driven
+  const Eigen::VectorXd& mass() const noexcept { return mass_; }                 ///< diagonal of M [kg], [kg.m^2]
+  const Eigen::VectorXd& inverseMass() const noexcept { return inverse_mass_; }  ///< 1 / mass(); 0 for a driven body
 
-  /// Assigns the nearest space to every tooth out of contact.
+  /// Assigns the nearest space of the circular spline to every tooth that is not in contact.
   void pairTeeth(const Eigen::VectorXd& q, double time) noexcept;
   void setSpaces(const std::vector<int>& spaces) noexcept { shape_.space = spaces; }
 
-  /// Computes force, shape, energies and power for a state.
+  /// Computes force, shape, energies and power for the coordinates `q`, their speeds `v` and a time [s].
   void evaluate(const Eigen::VectorXd& q, const Eigen::VectorXd& v, double time) noexcept;
 
   const Eigen::VectorXd& force() const noexcept { return force_; }  ///< force on every coordinate [N], [N.m]
@@ -116,21 +115,21 @@ public:
   const DrivePosition& position() const noexcept { return position_; }
   const RingForces& forces() const noexcept { return forces_; }  ///< forces of the elements without the dashpots
   double storedEnergy() const noexcept { return model_.storedEnergy(forces_, position_); }  ///< [J]
-  /// Kinetic energy of all coordinates; that of a driven body is constant [J].
+  /// Kinetic energy of all coordinates, including the constant energy of driven bodies [J].
   double kineticEnergy(const Eigen::VectorXd& v) const noexcept { return 0.5 * v.cwiseAbs2().dot(mass_); }
   const RingPower& power() const noexcept { return power_; }
 
   /// Minus the derivative of the force at the last evaluated state: K + `by_speed` C, with K the derivative by the
   /// coordinates, C that by the speeds, and `by_speed` [1/s]. The function omits the change of the dashpots' directions
-  /// and the unsymmetric part of the polar contact. This only slows the convergence of an iteration.
+  /// and the unsymmetric part of the polar contact. Without these terms an iteration only converges more slowly.
   void tangent(double by_speed, RingTangent& tangent) const noexcept;
 
-  /// Right-hand side for any solver: derivative of the state. `state` and `derivative` have `states()` values each.
+  /// Derivative of the state by time, for any solver. `state` and `derivative` have `states()` values each.
   void rates(const double* state, double time, double* derivative) noexcept;
 
-  /// Derivative of the right-hand side at the last evaluated state. The cup couples all teeth by a matrix of rank one.
-  /// With LEFT_OUT the pattern is constant, with about 20 entries for a tooth, and the missing part is - M^-1 k d d^T,
-  /// where k and d are `cup_stiffness` and `cup_direction` of `tangent`.
+  /// Derivative of `rates` by the state at the last evaluated state. The cup couples all teeth by a matrix of rank one.
+  /// With LEFT_OUT the result omits this matrix, - M^-1 k d d^T with k and d `cup_stiffness` and `cup_direction` of
+  /// `tangent`. The pattern of the result is then constant, with about 20 entries for a tooth.
   enum class Cup
   {
     DENSE,

@@ -135,7 +135,7 @@ public:
     loaded_ += quasi_static != 0.0 ? 1 : 0;
   }
 
-  /// Error over all values. `among_loaded`: only values other than zero count, because most teeth have the value zero.
+  /// Error of all values. `among_loaded`: the means are over the number of equilibrium values other than zero.
   DynamicError error(bool among_loaded = false) const noexcept
   {
     const double n = static_cast<double>(among_loaded ? loaded_ : count_);
@@ -160,8 +160,8 @@ class Comparison
 public:
   explicit Comparison(const RingModel& model) : model_(model), rest_(model.rest.points()) {}
 
-  /// Adds a comparison. `same`: equilibrium at both angles of the dynamic ring; `balanced`: equilibrium under the load
-  /// at the motor angle of the dynamic ring.
+  /// Adds a comparison. `same`: equilibrium at motor and output angle of the dynamic ring; `balanced`: equilibrium
+  /// under the load at the motor angle of the dynamic ring.
   void add(const DynamicRing& ring, double time, const RingEquilibrium& same, const RingEquilibrium& balanced,
            QuasiStaticResult& result)
   {
@@ -227,7 +227,7 @@ RingDrive driveOf(const Parameters& parameters, const QuasiStaticSetup& setup)
   return drive;
 }
 
-/// Solves two equilibria for a dynamic ring: `same` at its two angles, `balanced` under the load at its motor angle.
+/// Solves two equilibria: `same` at motor and output angle of `position`, `balanced` under the load at its motor angle.
 SolveStatus follow(const DrivePosition& position, double load, RingEquilibrium& same, RingEquilibrium& balanced)
 {
   const SolveStatus status = same.moveTo(position);

@@ -18,20 +18,20 @@ struct TransientSetup
   double step{ 5e-6 };           ///< length of a step [s]
   double duration{ 0.05 };       ///< length of the run [s]
   double growth_time{ 5e-3 };    ///< time in which the amplitude grows [s]
-  double window_start{ 0.03 };   ///< start of the window for statistics of the largest force; the run ends it [s]
+  double window_start{ 0.03 };   ///< start of the window of the statistics; the window ends with the run [s]
   double sample_period{ 5e-5 };  ///< time between two rows [s]
-  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`;
-  /// 0: all steps have the length `step`
+  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`.
+  /// With 0 all steps have the length `step`.
   double tolerance{};
 };
 
 /// Largest force of the wave generator on a tooth and energies of the ring, at one instant.
 struct TransientRow
 {
-  double time{};          ///< [s]
-  double force_max{};     ///< largest force on a tooth at this instant [N]
-  double force_lowest{};  ///< least value of the largest force since the preceding row [N]
-  double force_highest{};
+  double time{};               ///< [s]
+  double force_max{};          ///< largest force on a tooth at this instant [N]
+  double force_lowest{};       ///< least value of force_max since the preceding row [N]
+  double force_highest{};      ///< largest value of force_max since the preceding row [N]
   double radius_major_axis{};  ///< radius of tooth 0 [m]
   double stored{};             ///< increase of the stored energy since the start [J]
   double kinetic{};            ///< kinetic energy [J]
@@ -41,19 +41,19 @@ struct TransientRow
 
 struct TransientResult
 {
-  bool finished{};
+  bool finished{};      ///< whether the run reached its end
   double stopped_at{};  ///< time at which the integration failed [s]
   std::vector<TransientRow> rows;
-  double window_lowest{};   ///< least value of the largest force over all steps of the window [N]
-  double window_highest{};  ///< greatest value of the largest force over the window [N]
-  double window_mean{};     ///< mean of the largest force over the window [N]
+  double window_lowest{};   ///< least value of TransientRow::force_max over all steps of the window [N]
+  double window_highest{};  ///< largest value of force_max over all steps of the window [N]
+  double window_mean{};     ///< mean of force_max over the window [N]
   StepCounts counts;
   double solve_time{};          ///< computing time [s]
   std::vector<double> tooth_x;  ///< x of each tooth at the end [m]
   std::vector<double> tooth_y;
 };
 
-/// Simulates the insertion. The function calls `progress` with the finished fraction, 0 ... 1.
+/// Simulates the insertion. The function calls `progress` with the finished fraction of the run, 0 ... 1.
 TransientResult analyseTransient(const Parameters& parameters, const TransientSetup& setup,
                                  const std::function<void(double)>& progress);
 
@@ -61,7 +61,7 @@ TransientResult analyseTransient(const Parameters& parameters, const TransientSe
 /// the circular spline is a free body under a constant load. Both rings are without dry friction.
 ///
 /// The run starts with the positions and speeds of the ring in equilibrium (travelInEquilibrium). The transient that
-/// remains decays in `settle_time`.
+/// follows the start decays in `settle_time`.
 struct QuasiStaticSetup
 {
   RingMethod method{ RingMethod::TR_BDF2 };
@@ -80,8 +80,8 @@ struct QuasiStaticSetup
 struct DynamicError
 {
   double size{};  ///< root mean square of the quantity in equilibrium, to which relative errors refer
-  double rms{};
-  double max{};
+  double rms{};   ///< root mean square of the difference
+  double max{};   ///< largest magnitude of the difference
 };
 
 /// Forces on each tooth in the last comparison, for the dynamic ring and the ring in equilibrium.
@@ -97,12 +97,12 @@ struct ToothForceComparison
 struct QuasiStaticRow
 {
   double time{};                           ///< [s]
-  double torsion_dynamic{};                ///< output angle minus wave generator angle over the ratio [rad]
-  double torsion_quasi_static{};           ///< torsion of the equilibrium under this load at this motor angle [rad]
+  double torsion_dynamic{};                ///< output angle - wave generator angle / ratio, dynamic ring [rad]
+  double torsion_quasi_static{};           ///< this torsion in equilibrium under the load at the same motor angle [rad]
   double wave_generator_torque_dynamic{};  ///< torque on the wave generator, dynamic ring [N.m]
-  double wave_generator_torque_quasi_static{};
-  double contact_error_rms{};  ///< rms error of the wave generator's forces over the teeth [N]
-  double mesh_error_rms{};     ///< rms error of the mesh forces over the teeth [N]
+  double wave_generator_torque_quasi_static{};  ///< torque on the wave generator, ring in equilibrium [N.m]
+  double contact_error_rms{};  ///< rms difference of the wave generator's forces on the teeth between the rings [N]
+  double mesh_error_rms{};     ///< rms difference of the mesh forces on the teeth between the rings [N]
 };
 
 enum class QuasiStaticOutcome
@@ -120,7 +120,7 @@ struct QuasiStaticResult
   SolveStatus status;                  ///< status of the last equilibrium
   double stopped_at{};                 ///< time at which the integration or an equilibrium failed [s]
   DynamicError contact_force;          ///< force of the wave generator on each tooth [N]
-  DynamicError mesh_force;             ///< mesh force of each tooth; `size` is over the loaded teeth [N]
+  DynamicError mesh_force;             ///< mesh force of each tooth; `size` and `rms` over the loaded teeth [N]
   DynamicError position;               ///< position of each tooth point; `size` is the displacement from rest [m]
   DynamicError wave_generator_torque;  ///< [N.m]
   DynamicError output_torque;          ///< [N.m]
@@ -131,7 +131,7 @@ struct QuasiStaticResult
   ToothForceComparison last;
 };
 
-/// Runs the comparison. The function calls `progress` with the finished fraction, 0 ... 1.
+/// Runs the comparison. The function calls `progress` with the finished fraction of the run, 0 ... 1.
 QuasiStaticResult checkQuasiStatic(const Parameters& parameters, const QuasiStaticSetup& setup,
                                    const std::function<void(double)>& progress);
 }  // namespace hjt

@@ -19,8 +19,8 @@ namespace
 using namespace assessment_errors;
 
 /// Simulates assessments of one drive with the errors of assessment_errors and of this class. Most errors are constant
-/// for a drive; a small error changes from estimate to estimate. The cause is the kind of wear that exceeds its
-/// detection limit most. A wrong cause is wave generator wear, which changes the indicators in a similar way.
+/// for a drive; a small error changes from estimate to estimate. The true cause is the kind of wear that exceeds its
+/// detection limit most. A wrong cause is always wave generator wear, which changes the indicators in a similar way.
 class SimulatedAssessments
 {
 public:
@@ -81,9 +81,9 @@ private:
   FaultScaleParameters scale_;
   boost::random::mt19937 random_;
   boost::random::normal_distribution<double> normal_;
-  std::array<double, 3> found_from_;  // severities of the detection limits
+  std::array<double, 3> found_from_;  // severity at which each kind of wear is found; infinite: never
   std::array<double, 3> estimate_factor_;
-  std::array<double, 3> mistaken_;  // uniform random numbers in 0 ... 1; small: the cause is right
+  std::array<double, 3> mistaken_;  // uniform random numbers in 0 ... 1; the cause is right below RIGHT_CAUSE
 };
 
 /// Simulates readings of one drive's wear with the errors of assessment_errors.

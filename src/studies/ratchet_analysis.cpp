@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// Moves the output to an angle and solves for the wave amplitude in balance.
+  /// Moves the output to an angle [rad] and solves for the wave amplitude at which the lobes are in balance.
   SolveStatus moveOutput(double output_angle)
   {
     DrivePosition target = ring_.position();
@@ -53,7 +53,7 @@ private:
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);
   }
 
-  /// Moves to the target. If single teeth snap on the way, descends to the next equilibrium.
+  /// Moves the ring to the position `target`. If single teeth snap on the way, descends to the next equilibrium.
   SolveStatus move(const DrivePosition& target)
   {
     const SolveStatus status = ring_.moveTo(target);
@@ -72,7 +72,7 @@ private:
     return move(target);
   }
 
-  /// Solves for the amplitude in balance by the Illinois variant of false position.
+  /// Solves for the wave amplitude in balance, by the Illinois variant of the method of false position.
   SolveStatus balanceAmplitude()
   {
     constexpr int MAX_ITERATIONS = 60;
@@ -154,7 +154,7 @@ RatchetRow rowOf(const RingEquilibrium& ring, CompliantDrive& drive, double unlo
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress)
 {
-  constexpr double FALL = 0.9;  // torque over the largest torque, below which a decrease is a jump and no ripple
+  constexpr double FALL = 0.9;  // torque over the largest torque, below which the decrease is a jump of teeth
   RatchetResult result;
   const RingModel model = startingJoint(parameters).ring;
   RingEquilibrium ring(model, parameters.solver);

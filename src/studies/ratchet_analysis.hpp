@@ -12,7 +12,7 @@ namespace hjt
 /// State of the drive at one output angle, with the wave generator locked and without friction.
 struct RatchetRow
 {
-  double output_angle{};              ///< angle in the direction against the load; 0 without load [rad]
+  double output_angle{};              ///< angle of the output in the direction against the load; 0 without load [rad]
   double torque{};                    ///< load on the circular spline [N.m]
   double wave_amplitude{};            ///< amplitude of the wave [m]
   double lobe_force{};                ///< inward force of the ring on each lobe, minus this force without load [N]
@@ -20,8 +20,8 @@ struct RatchetRow
   double mesh_force_max{};            ///< largest mesh force of a tooth [N]
   double wave_generator_force_max{};  ///< largest force of the wave generator on a tooth [N]
   int teeth_loaded{};                 ///< number of teeth that carry mesh force [-]
-  int snaps{};                        ///< number of steps so far in which teeth snapped to another equilibrium
-  int teeth_jumped{};                 ///< number of teeth in contact in another space than without load
+  int snaps{};                        ///< number of steps so far in which teeth snapped to a different equilibrium
+  int teeth_jumped{};                 ///< number of teeth in contact in a different space than without load
 };
 
 enum class RatchetEnd
@@ -44,7 +44,7 @@ struct RatchetResult
 ///
 /// `lobe_stiffness` k: radial stiffness of each lobe with its support [N/m], > 0, infinite for rigid lobes. With
 /// elastic lobes the wave amplitude w is an unknown with the energy k (w_free - w)^2. The function chooses w_free such
-/// that w = w0 without load, because w0 was measured on the assembled gear.
+/// that w is gear.wave_amplitude without load, because this amplitude is that of the assembled gear.
 RatchetResult analyseRatchet(const Parameters& parameters, double wave_generator_angle, double lobe_stiffness,
                              double angle_step, double torque_limit, const std::function<void(double)>& progress);
 }  // namespace hjt

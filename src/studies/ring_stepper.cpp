@@ -143,7 +143,7 @@ void ImplicitRingStepper::accept() noexcept
 {
   if (tableau_.explicit_first)
   {
-    begin(v_);  // the last stage was the end of the step
+    begin(v_);  // the last stage of the accepted step is the first stage of the next step
   }
 }
 
@@ -177,10 +177,10 @@ bool ImplicitRingStepper::factor() noexcept
 
 bool ImplicitRingStepper::solveStage(double time) noexcept
 {
-  constexpr double GOOD_CONTRACTION = 0.01;  // ratio of norms below which the next iteration uses the factors again
+  constexpr double GOOD_CONTRACTION = 0.01;  // norm over last norm, below which the next iteration keeps the factors
   double norm = residual(time);
   bool useful = factored_;
-  bool own = false;  // whether the factors belong to this point
+  bool own = false;  // whether the factors belong to the current point of the iteration
   for (int i = 0; i < parameters_.max_iterations; ++i)
   {
     if (!std::isfinite(norm))
@@ -243,9 +243,9 @@ namespace
 ///   next length / this length = 0.9 e_n^(-0.7 / k) e_(n-1)^(0.4 / k),  limited to 0.2 ... 5
 /// where   e_n   error estimate of the accepted step n over the tolerance;  k   order of the estimate
 ///
-/// A step with e_n > 1 is repeated with a shorter length, and the next step is not longer. The forces have a kink where
-/// a tooth begins or ends contact. The class does not detect such events, but there the estimate increases and the
-/// steps become shorter. Only the constructor allocates.
+/// A step with e_n > 1 is repeated with a shorter length, and the step after it is not longer. The forces have a kink
+/// when a tooth begins or ends contact. The class does not detect these events, but the error estimate increases at
+/// such an event, so that the steps become shorter. Only the constructor allocates.
 class AdaptiveRingStepper : public RingStepper
 {
 public:
@@ -321,7 +321,7 @@ private:
   static constexpr double MAX_CHANGE = 5.0;
   static constexpr double MIN_RATIO = 1e-6;  // lower limit of e_n, which may be small by chance
 
-  /// Length of a first step in which the current accelerations move no tooth by more than the tolerance [s].
+  /// Length of the first step, in which its first accelerations move no tooth by more than the tolerance [s].
   double firstStep(const RingMotion& motion, double length) noexcept
   {
     ring_.evaluate(motion.q, motion.v, motion.time);
@@ -346,15 +346,15 @@ private:
   DynamicRing& ring_;
   ImplicitRingStepper method_;
   double tolerance_;
-  double next_{};           // next step of the control; 0: not determined yet [s]
+  double next_{};           // length of the next step by the control; 0: not determined yet [s]
   double previous_{ 1.0 };  // e_n of the last accepted step
   bool just_rejected_{};
   RingMotion begin_;
   RingMotion before_;
 };
 
-/// The classical Runge-Kutta method of Boost.odeint, as reference for the implicit methods. It has little numerical
-/// damping, but the step must be shorter than 2.8 over the angular frequency of the stiffest mode.
+/// The classical Runge-Kutta method of Boost.odeint, as reference for the implicit methods. The method has little
+/// numerical damping, but the step must be shorter than 2.8 over the angular frequency of the stiffest mode.
 class ExplicitRingStepper : public RingStepper
 {
 public:

@@ -14,13 +14,13 @@
 
 namespace hjt
 {
-/// State of a dynamic ring with its energy account.
+/// State of a dynamic ring, with the supplied and the dissipated energy.
 struct RingMotion
 {
   explicit RingMotion(int coordinates) : q(Eigen::VectorXd::Zero(coordinates)), v(Eigen::VectorXd::Zero(coordinates)) {}
 
   Eigen::VectorXd q;    ///< tooth points [m], wave generator angle, output angle [rad]
-  Eigen::VectorXd v;    ///< speeds of `q`
+  Eigen::VectorXd v;    ///< speeds of `q` [m/s], [rad/s]
   double time{};        ///< [s]
   double supplied{};    ///< energy supplied since the start [J]
   double dissipated{};  ///< energy dissipated by dashpots and viscous friction [J]
@@ -41,7 +41,7 @@ class RingStepper
 public:
   virtual ~RingStepper() = default;
 
-  /// Advances by one step, and assigns the teeth to spaces at its start. On failure the motion does not change.
+  /// Assigns spaces to the teeth and advances the motion by `length` [s]. Returns false, without a change, on failure.
   virtual bool step(RingMotion& motion, double length) noexcept = 0;
 
   const StepCounts& counts() const noexcept { return counts_; }
@@ -68,8 +68,8 @@ std::unique_ptr<RingStepper> makeRingStepper(RingMethod method, DynamicRing& rin
                                              double tolerance = 0.0);
 
 /// Sets `motion` to the positions and speeds of a quasi-static ring, while the wave generator turns at `speed` [rad/s]
-/// under a constant `load` [N.m]. `ring`: in equilibrium under this load. The output turns at its mean speed over a
-/// tooth pitch, because its inertia prevents faster changes. @returns a status that is not ok() if this fails.
+/// under a constant `load` [N.m]. `ring`: equilibrium under this load. The output turns at its mean speed over a
+/// tooth pitch, because its inertia prevents faster changes. @returns a status that is ok() if there is an equilibrium.
 inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed, double load, RingMotion& motion)
 {
   const double pitch = ring.model().rest.pitchAngle();
@@ -85,8 +85,8 @@ inline SolveStatus travelInEquilibrium(const RingEquilibrium& ring, double speed
   return status;
 }
 
-/// Direct solver for the ring's tangent over all coordinates: a cyclic matrix of the teeth with a border for the two
-/// angles. Two more right-hand sides condense the border to a 2 x 2 matrix. Only the constructor allocates.
+/// Direct solver for the ring's tangent over all coordinates: a cyclic matrix of the teeth with a border for the angles
+/// of wave generator and output. Two right-hand sides condense the border to 2 x 2. Only the constructor allocates.
 class BorderedRingSolver
 {
 public:
@@ -128,7 +128,7 @@ public:
     return corner_inverse_.allFinite();
   }
 
-  /// Solves in place for 2 N coordinates of the teeth, wave generator and output.
+  /// Solves in place for 2 N coordinates of the teeth, wave generator angle and output angle.
   void solve(Eigen::VectorXd& b) noexcept
   {
     scratch_ = b.head(scratch_.size());
@@ -156,8 +156,8 @@ private:
 
   CyclicSolver teeth_;
   std::array<bool, 2> held_{};
-  Columns border_;     // couplings of the teeth with the two angles
-  Columns condensed_;  // teeth_^-1 border_
+  Columns border_;     // couplings of the teeth with wave generator angle and output angle
+  Columns condensed_;  // inverse of the teeth's matrix times border_
   Eigen::Matrix2d corner_inverse_{ Eigen::Matrix2d::Identity() };
   Eigen::VectorXd scratch_;
 };
@@ -167,13 +167,13 @@ private:
 /// All implicit stages have the diagonal gamma and share one factored matrix. The first stage may be explicit.
 struct RungeKuttaTableau
 {
-  int order;
+  int order;                                ///< order of the method
   double gamma;                             ///< diagonal coefficient of the implicit stages [-]
   bool explicit_first;                      ///< whether the first stage is explicit, at the start of the step
   std::vector<std::vector<double>> before;  ///< weights of the earlier stages, one row for each stage [-]
   std::vector<double> times;                ///< times of the stages, as shares of the step [-]
   std::vector<double> error;                ///< weights of the embedded error estimate; empty: none [-]
-  int error_power;                          ///< order of the error estimate in the step length; 0: no estimate
+  int error_power;                          ///< power of the step length in the error estimate; 0: no estimate
 
   int stages() const { return static_cast<int>(times.size()); }
   /// Weight of stage i in the step, from the last row.
@@ -252,13 +252,13 @@ public:
 
   /// Attempts one step with the current spaces of the teeth. @returns false, with the motion unchanged, if it diverges.
   bool attempt(RingMotion& motion, double length) noexcept;
-  /// Forgets the first stage. Call it before the first attempt, and after external changes of motion or drive.
+  /// Forgets the first stage. Must be called before the first attempt, and after external changes of motion or drive.
   void restart() noexcept { begun_ = false; }
-  /// Accepts the last attempt: the next attempt starts at its end, and without this call at its start.
+  /// Accepts the last attempt, so that the next attempt starts at the end of this attempt and not at its start.
   void accept() noexcept;
   /// Largest error of a tooth's position in the last attempt, estimated by the embedded method [m].
   double errorEstimate() const noexcept { return error_; }
-  int errorPower() const noexcept { return tableau_.error_power; }  ///< order of the error estimate
+  int errorPower() const noexcept { return tableau_.error_power; }  ///< RungeKuttaTableau::error_power
 
 private:
   void begin(const Eigen::VectorXd& speeds) noexcept;
@@ -278,7 +278,7 @@ private:
   bool factored_{};      // whether the matrix was factored in this step
   bool begun_{};         // whether the explicit first stage is computed
   double largest_{};     // largest component of the out-of-balance force [N]
-  double error_{};       // [m]
+  double error_{};       // errorEstimate of the last attempt [m]
   // Working memory.
   std::vector<Eigen::VectorXd> speeds_;         // derivative of q at each stage
   std::vector<Eigen::VectorXd> accelerations_;  // derivative of v at each stage
