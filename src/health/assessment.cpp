@@ -38,7 +38,7 @@ std::string whyNotJudged(const Assessment& assessment)
                  "there is no healthy reference for this operating point" :
                  "the healthy reference needs " + needed + " windows at this operating point, but has " + here;
     case AssessmentState::TOO_FEW_WINDOWS:
-      return "too few windows: a verdict needs " + needed + " at one operating point, but has " + here;
+      return "too few windows: a verdict needs " + needed + " at one operating point, but there are " + here;
     case AssessmentState::OTHER_PAYLOAD:
       return "the reference has no windows with this payload, load or gain of the current: add windows with this "
              "payload and load to the reference, or correct the torque per current";
@@ -171,7 +171,7 @@ HealthLevel Assessor::levelOf(const FeatureScores& scores, const OperatingPoint&
 }
 
 /// Changes the level when least_windows_ successive means of the last windows agree on a higher, or a lower, level. The
-/// level falls only by windows of the class of operating points that showed it, because other classes may hide a fault.
+/// level falls only by windows of the class of operating points that showed it, because another class may hide a fault.
 void Assessor::updateLevel(HealthLevel level) noexcept
 {
   if (baseline_.residual().windows < least_windows_)

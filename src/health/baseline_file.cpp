@@ -118,7 +118,7 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     }
     if (!file["format"] || file["format"].as<int>() != FORMAT)
     {
-      throw InputError("it is of another version of the software; save it again");
+      throw InputError("another version of the software wrote the file; save the file again");
     }
     const double step = file["load_step"] ? yamlNumber(file["load_step"]) : 0.0;
     if (std::abs(step - loadStep(parameters)) > 1e-6 * loadStep(parameters))
@@ -129,8 +129,8 @@ std::vector<ReferenceBin> readBaseline(const std::string& path, const Parameters
     }
     if ((file["model"] && file["model"].as<bool>()) != less_model)
     {
-      throw InputError(less_model ? "it was saved without --model, which is given here" :
-                                    "it was saved with --model, which is missing here");
+      throw InputError(less_model ? "it was saved without --model, so it serves only without --model" :
+                                    "it was saved with --model, so it serves only with --model");
     }
     for (const YAML::Node& node : list)
     {

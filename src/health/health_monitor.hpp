@@ -73,7 +73,7 @@ class Play
 public:
   explicit Play(double width) : half_(0.5 * width) {}
 
-  /// Returns -1 while the quantity falls, +1 while it rises, and a value between -1 and +1 just after a reversal.
+  /// Returns -1 while the quantity falls, +1 while it rises, and between -1 and +1 within `width` after a reversal.
   double follow(double quantity) noexcept
   {
     centre_ = std::clamp(centre_, quantity - half_, quantity + half_);
@@ -314,13 +314,13 @@ public:
   /// the store.
   void update(double motor_angle, double torsion) noexcept;
 
-  /// Travel of the motor over travel of the output, over the last turn of the motor [-]. It is not valid if the store
-  /// is not full, or if the output moved by less than a millionth of its nominal travel.
+  /// Travel of the motor over travel of the output in the last turn of the motor [-]. The ratio is not valid if the
+  /// store is not full, or if the output moved by less than a millionth of the output's nominal travel.
   Indicator transmissionRatio() const noexcept;
 
   /// Peak to peak of the torsion at the marks of the last turn, minus the straight line through the ends of the turn
-  /// [rad]. The line removes the torsion by a load that changes steadily. It does not affect errors with a whole number
-  /// of cycles per turn, because these are equal at both ends. A line by least squares would affect them.
+  /// [rad]. The line removes the torsion by a load that changes steadily. The line does not affect errors with a whole
+  /// number of cycles per turn, which are equal at both ends. A line by least squares would affect these errors.
   Indicator kinematicError() const noexcept;
 
 private:
@@ -497,7 +497,7 @@ private:
 /// Torsional stiffness of the drive: slope of the joint torque over the torsion.
 ///
 /// Law:   T = T_0 + K tau,  recursive least squares
-/// where  T    joint torque                          [N.m]
+/// where  T    joint torque;  T_0  its offset        [N.m]
 ///        tau  torsion                               [rad]
 ///        K    torsional stiffness                   [N.m/rad]
 /// The weight of a sample is the time since the last sample, and decays exponentially with health.averaging_time.

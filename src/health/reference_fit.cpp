@@ -285,7 +285,7 @@ void add(double indicator, const PlaceVector& place, double weight, IndicatorSum
   mapped(sums.places).noalias() += weight * place * place.transpose();
 }
 
-/// Sum of squares of the indicator that the regression with these slopes does not explain.
+/// Sum of squares of the indicator that the regression with the slopes `slopes` does not explain.
 double squareLeft(const IndicatorSums& sums, const PlaceVector& slopes) noexcept
 {
   return sums.square + slopes.dot(mapped(sums.places) * slopes - 2.0 * mapped(sums.mixed));

@@ -10,7 +10,7 @@
 
 namespace hjt
 {
-/// Largest tail, 1 / degrees of freedom, of single windows. With 4 degrees or fewer a spread has no finite error.
+/// Largest tail (1 / degrees of freedom) of single windows. At a tail of 1/4 or more the error of a spread is infinite.
 constexpr double MOST_TAIL = 0.22;
 
 /// Converts Student's t with `freedom` degrees of freedom to a normal deviate (Wallace 1959). studentOf is the inverse.
@@ -20,8 +20,8 @@ double studentOf(double score, double freedom) noexcept;
 /// Normal deviate that the share `share` of the normal distribution exceeds.
 double normalQuantile(double share);
 
-/// Repeatability for the value of indicators.least_spread. With the shipped 0.01 that of the friction is as measured on
-/// one UR5 from one recording to the next, 3 % and 0.22 N.m (docs/compare.md). 1 % of other indicators is assumed.
+/// Repeatability that follows from indicators.least_spread. The shipped 0.01 gives friction the repeatability that was
+/// measured on one UR5, 3 % and 0.22 N.m (docs/compare.md), and gives other indicators 1 %, which is assumed.
 Repeatability repeatabilityOf(const Parameters& parameters);
 
 /// Standard deviation of a sound drive's indicator from one recording to the next, in the unit of the indicator.

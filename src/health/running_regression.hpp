@@ -9,7 +9,7 @@ namespace hjt
 ///
 /// Law:   minimise  sum w (y - x . b)^2 + ridge
 /// where  x, y  row of the design and its targets;  b  coefficients, one column per target
-///        w     weight as given to `add`, times all shares that later calls of `forget` kept
+///        w     weight given to `add`, times the argument of each later call of `forget`
 /// Columns are scaled to unit mean square before the factorisation. The ridge is 1e-6. The ridge matters only for
 /// columns that depend on each other: it divides their effect among their coefficients, and their `inflation` is large.
 class RunningRegression
@@ -27,7 +27,7 @@ public:
   void subtract(int column, int other, double share) noexcept;
   /// Changes the sums as if the column had been zero in every row. The coefficient of the column is then 0.
   void drop(int column) noexcept;
-  /// Mean of the product of two columns [-].
+  /// Mean over the rows of the product of two columns, in the product of their units.
   double mean(int column, int other) const noexcept;
 
   /// Fits the first `used` columns. If rows are too few or the fit is singular, returns false and keeps the last fit.

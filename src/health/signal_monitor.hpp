@@ -151,7 +151,7 @@ private:
 /// Load torque of a joint as a function of its angle. The function depends on the payload and not on the path.
 ///
 /// Law:   T = c + s sin(phi) + k cos(phi),  least squares over the time
-/// where  T, phi  load torque [N.m], output angle [rad];  s, k  weight [N.m];  c  constant part of the load [N.m]
+/// where  T, phi  load torque [N.m], output angle [rad];  s, k  parts by weight [N.m];  c  constant part [N.m]
 /// If the rms variation of the angle is below about 0.3 deg, the fit determines only c, and s and k go to 0.
 class LoadOverAngle
 {

@@ -83,7 +83,7 @@ private:
       {
         fail(lineOf(format), "format: " + (format.IsScalar() ? format.Scalar() : "no number") + ", expected " +
                                  std::to_string(SIGNATURE_FORMAT) +
-                                 ": another version wrote the file; make the file again with "
+                                 ": another version of the software wrote the file; make the file again with "
                                  "`joint_twin signatures`");
       }
       set_.gear = section(file, "gear").as<std::string>();
@@ -537,7 +537,7 @@ std::string withRowsOf(const std::string& text, const std::string& path, const s
 {
   if (parseSignatures(text, path).fitted != parseSignatures(added, "those to add").fitted)
   {
-    throw ParameterError(path + ": its indicators differ from those of the signatures to add");
+    throw ParameterError(path + ": the indicators of this file differ from those of the signatures to add");
   }
   std::string all = text + (text.back() == '\n' ? "" : "\n");
   std::istringstream rows(added.substr(added.find(SIGNATURES) + std::string(SIGNATURES).size()));

@@ -46,10 +46,10 @@ RevolutionLoad combined(const RevolutionLoad& a, const RevolutionLoad& b, Of&& o
   return result;
 }
 
-// Laws of ageing: rates per turn of the wave generator.
+// The laws of ageing give rates per turn of the wave generator.
 
 /// Archard's law: wear depth of a surface, k F s / A [m].
-/// `coefficient`: k [1/Pa], `sliding`: force times distance [N.m], `area` [m^2].
+/// `coefficient`: k [1/Pa]; `sliding`: F s, force times distance [N.m]; `area`: A [m^2].
 inline double archardDepth(double coefficient, double sliding, double area)
 {
   return coefficient * sliding / area;
@@ -88,7 +88,7 @@ struct AgeingParameters
 /// radius (Lukas and Klesnil). `depth`: depth of the crack, >= 0 [m].
 double stressIntensityRange(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
-/// Growth of a crack of the depth `depth` [m] in one turn, by Paris' law with a threshold [m]. The rim bends twice.
+/// Growth of a crack of `depth` [m] in one turn, by Paris' law with a threshold [m]. The rim bends twice in a turn.
 double crackGrowth(const AgeingParameters& parameters, const RevolutionLoad& revolution_load, double depth);
 
 /// Number of turns at rated torque that wear the wave generator's bearing as much as one turn under `load_torque`

@@ -214,7 +214,7 @@ DriveAgeing::Life DriveAgeing::live(const UnitVariation& variation, double hours
     const bool stopping = stops(end);
     if (stopping)
     {
-      // Bisects to the first instant of an event: end of use or hours, change of grease. A step has at most one event.
+      // Bisects to the instant of an event: end of use or of the hours, or change of grease. A step has at most one.
       for (int i = 0; i < BISECTIONS; ++i)
       {
         const double middle = 0.5 * (begin + end);

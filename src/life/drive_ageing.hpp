@@ -37,7 +37,7 @@ public:
   {
     double hours{};                ///< hours of use until the end of use or, without an end, the requested hours
     std::optional<EndOfLife> end;  ///< reason for the end of use; empty if the drive is still in use
-    DriveAge age;                  ///< age after these hours
+    DriveAge age;                  ///< age of the drive after `hours`
   };
 
   /// Ages a new drive for `hours`, or until the end of use. The function calls `visit(hours, age)` at every multiple of

@@ -13,7 +13,7 @@ namespace hjt
 namespace
 {
 /// Change of an indicator by one kind of wear as a function of the severity. The function is 0 at severity 0, has the
-/// changes of the signatures at their severities, and is linear between and beyond them.
+/// changes of the signatures at the severities of the signatures, and is linear between and beyond these severities.
 class Response
 {
 public:

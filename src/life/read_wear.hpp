@@ -85,8 +85,8 @@ struct WearReading
 ///
 /// Law:   w(s_f) = d_w,   sum over K1, K2 of (k(s_f) + l_k(s_i)) / k_0 = sum of d_k / k_0
 /// where  w, k     change of the lost motion and of a stiffness by tooth wear, as functions of its severity s_f
-///        l_k      change of a stiffness by interface wear, as a function of its severity s_i. All three are means over
-///                 the signatures, weighted by the similarity of the motions, and linear between severities
+///        l_k      change of a stiffness by interface wear, as a function of its severity s_i. w, k and l_k are means
+///                 over the signatures, weighted by the similarity of the motions, and linear between severities
 ///        d, k_0   difference of the window from the reference; stiffness of the sound drive
 /// Only tooth wear counts for the lost motion, because other wear has less than a tenth of the effect of tooth wear.
 /// The law adds both stiffnesses, because the share of K1 and K2 in the softening depends on the largest load.

@@ -46,7 +46,7 @@ double fatigueBy(const Usage& usage, double strength, std::size_t place) noexcep
 }
 
 /// Variance of ln(future mean rate of wear / past mean rate), if the logarithms of the rates of single fillings of
-/// grease have unit variance. The current filling is in both. `so_far`, `ahead`: number of past and future fillings.
+/// grease have unit variance. The current filling is past and future. `so_far`, `ahead`: number of fillings of each.
 double changeOfRate(double so_far, double ahead) noexcept
 {
   if (ahead <= 0.0)

@@ -186,8 +186,8 @@ struct RemainingHours
   std::array<double, CAUSES.size()> by_cause{};  ///< probability of each cause of the end, in the order of CAUSES [-]
 };
 
-/// Whether an assessment replaces the assessment `before`. It does if it compared its window, with one exception: at
-/// level OK, an assessment that does not show play does not replace an assessment at level OK that shows play.
+/// Whether `assessment` replaces `before`: `assessment` compared its window, unless `assessment` is OK without showing
+/// play and `before` is OK and shows play.
 inline bool supersedes(const Assessment& assessment, const Assessment& before) noexcept
 {
   const bool says_less = assessment.level == HealthLevel::OK && !assessment.shows_play &&
@@ -198,8 +198,8 @@ inline bool supersedes(const Assessment& assessment, const Assessment& before) n
 /// Distribution of the remaining life over the unknown variation of one drive.
 ///
 /// A particle is a drive with its own factors of wear, bearing life and fatigue strength. Their distributions are from
-/// literature and catalogue (log-normal; Weibull for the bearing's life), truncated by the condition that the use so
-/// far has not ended the use of the drive. The random numbers are a Sobol sequence. Use ages all particles by the same
+/// literature and catalogue (log-normal; Weibull for the bearing's life), truncated by the condition that the drive is
+/// still in use. The random numbers are a Sobol sequence. Use ages all particles by the same
 /// laws. An assessment weights each particle by the likelihood of this assessment, given the particle's wear as
 /// severities of faults:
 ///
@@ -246,7 +246,7 @@ private:
   };
   using Point = std::array<double, NATURES>;  // uniform in 0 ... 1
 
-  /// A particle: a drive that the use so far has not ended.
+  /// A particle: a drive that is still in use after the use so far.
   struct Drive
   {
     UnitVariation variation;

@@ -97,7 +97,7 @@ struct WearTrends
   double reading_at_end{ HUGE_VAL };  ///< reading of the flanks at which the lost motion ends the drive's use [-]
 };
 
-/// Wear changes the loads that cause it. The equivalent wear depth is the depth that equal use would cause with the
+/// Wear changes the loads that cause wear. The equivalent wear depth is the depth that equal use would cause with the
 /// loads of the new drive. This class gives the equivalent depth as a function of the real depth, linear between nodes.
 class LoadFeedback
 {

@@ -133,7 +133,7 @@ private:
 /// With fewer than n + 1 readings the difference is over the available readings. With fewer than two readings, and
 /// during the delay, the velocity is zero.
 ///
-/// `update` only stores true values. The first reading of a step computes the errors. Several threads may read at once.
+/// `update` only stores true values. The first read of a step adds the errors. Several threads may read at once.
 class JointSensors
 {
 public:

@@ -221,7 +221,7 @@ void applyRatings(const Parameters& from, const GearRequest& request, const Gear
   const std::string rule = rule_of(request.ratings);
   designer.set("cup.torsion_breakpoints", { figures.breakpoints[0], figures.breakpoints[1] },
                rule_of(request.breakpoints));
-  // The cup friction over T1 is that of the configured gear.
+  // The ratio of cup friction to T1 is that of the configured gear.
   designer.scale("cup.friction_torque", figures.breakpoints[0] / from.cup.torsion_breakpoints[0],
                  "in proportion to T1, at which gears have about equal torsion");
   designer.set("life.rated_torque", figures.rated_torque, rule);

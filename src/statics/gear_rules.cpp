@@ -87,7 +87,7 @@ public:
 private:
   std::vector<std::string>& warnings_;
 };
-/// Message about the jam of a sound gear with this fit; empty if the gear does not jam.
+/// Message about the jam that `fit`, the check of a sound gear's teeth, shows; empty if the teeth do not jam.
 std::string jamText(const Parameters& sound, const FitCheck& fit)
 {
   if (!fit.jams())

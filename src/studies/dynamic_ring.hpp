@@ -55,7 +55,7 @@ void visitEntries(const RingTangent& tangent, Visitor&& visit)
 /// Amplitude of the wave, which grows at constant speed. A step of the integration must end when this speed changes.
 struct WaveGrowth
 {
-  double begin{};      ///< time of the beginning [s]
+  double begin{};      ///< time at which the growth begins [s]
   double amplitude{};  ///< amplitude at `begin` [m]
   double speed{};      ///< speed of growth [m/s]
 

@@ -11,7 +11,7 @@
 namespace hjt
 {
 /// Insertion of the wave generator as a motion (thesis ch. 6): the amplitude of the wave grows at constant speed from 0
-/// to w0 and then stays constant. There is no circular spline, and the wave generator is held.
+/// to gear.wave_amplitude and then stays constant. The ring has no circular spline. The wave generator does not turn.
 struct TransientSetup
 {
   RingMethod method{ RingMethod::ESDIRK4 };
@@ -32,7 +32,7 @@ struct TransientRow
   double force_max{};          ///< largest force on a tooth at this instant [N]
   double force_lowest{};       ///< least value of force_max since the preceding row [N]
   double force_highest{};      ///< largest value of force_max since the preceding row [N]
-  double radius_major_axis{};  ///< radius of tooth 0 [m]
+  double radius_major_axis{};  ///< radius of tooth 0, at the major axis [m]
   double stored{};             ///< increase of the stored energy since the start [J]
   double kinetic{};            ///< kinetic energy [J]
   double supplied{};           ///< energy supplied by the growth of the wave generator [J]
@@ -49,8 +49,8 @@ struct TransientResult
   double window_mean{};     ///< mean of force_max over the window [N]
   StepCounts counts;
   double solve_time{};          ///< computing time [s]
-  std::vector<double> tooth_x;  ///< x of each tooth at the end [m]
-  std::vector<double> tooth_y;
+  std::vector<double> tooth_x;  ///< x of each tooth point at the end [m]
+  std::vector<double> tooth_y;  ///< y of each tooth point at the end [m]
 };
 
 /// Simulates the insertion. The function calls `progress` with the finished fraction of the run, 0 ... 1.
@@ -71,8 +71,8 @@ struct QuasiStaticSetup
   double settle_time{ 5e-3 };      ///< time before the first comparison [s]
   double duration{ 5e-3 };         ///< duration of the comparison [s]
   double compare_period{ 37e-6 };  ///< time between two comparisons [s]
-  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`;
-  /// 0: all steps have the length `step`
+  /// largest error of a tooth's position in one step [m]. With a value > 0 the length of the steps varies up to `step`.
+  /// With 0 all steps have the length `step`.
   double tolerance{};
 };
 

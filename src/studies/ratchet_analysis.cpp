@@ -47,7 +47,7 @@ private:
     return ring_.forces().of<WaveGeneratorContact>().force.dot(surface_);
   }
 
-  /// Unbalanced force on the amplitude [N]. Its derivative by the amplitude is at least that of the springs, 2 k.
+  /// Unbalanced force on the wave amplitude [N]. The force grows with the amplitude by at least twice lobe_stiffness.
   double excess()
   {
     return amplitudeForce() - unloaded_ - 2.0 * stiffness_ * (amplitude_ - ring_.position().wave_amplitude);

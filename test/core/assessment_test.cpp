@@ -72,7 +72,7 @@ TEST_F(Assessed, FewerWindowsThanAnotherLevelTakesAreNoVerdict)
     EXPECT_EQ(assessment.windows_here, here);
     EXPECT_EQ(assessment.windows_needed, 5);
     EXPECT_EQ(whyNotJudged(assessment),
-              "too few windows: a verdict needs 5 at one operating point, but has " + std::to_string(here));
+              "too few windows: a verdict needs 5 at one operating point, but there are " + std::to_string(here));
   }
   EXPECT_EQ(windows(1).state, AssessmentState::ASSESSED);
   EXPECT_GE(assessor_.assessment().level, HealthLevel::WARN);

@@ -105,7 +105,8 @@ class Indicators(tool.ToolTest):
         judged = ["indicators", "faulty.csv", *COLUMNS, *SMALL_WINDOWS, "--baseline", "b.yaml"]
         done = self.run_tool(*judged)
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn("faulty.csv: too few windows: a verdict needs 5 at one operating point, but has 3", done.stderr)
+        self.assertIn("faulty.csv: too few windows: a verdict needs 5 at one operating point, but there are 3",
+                      done.stderr)
         self.assertRegex(done.stdout, r"state +too few windows\nlevel +not judged\n")
         self.assertRegex(done.stdout, r"furthest off +kinematic_error\nits deviation +[1-9][0-9.]+ spreads\n")
         # A check-up that is made once is judged by its window.
@@ -234,7 +235,7 @@ record:
         self.assertNotEqual(last["worn.csv"]["level"], "OK")
         self.assertIn("running_torque", [item["indicator"] for item in last["worn.csv"]["evidence"]])
 
-        self.fail_with(1, ["b.yaml is no baseline: it was saved with --model, which is missing here"],
+        self.fail_with(1, ["b.yaml is no baseline: it was saved with --model, so it serves only with --model"],
                        "indicators", "fast.csv", *judged)
         self.fail_with(1, ["--model was given 1 times for 2 recordings"],
                        "indicators", "fast.csv", "worn.csv", *COLUMNS, "--model", "fast_model.csv")
@@ -297,7 +298,7 @@ record:
         head = "format: 4\nload_step: 25.125\nbaseline:\n"
         point = "  - {speed: 1, direction: 0, load: 0, temperature: 0, windows: 3, runs: 3, tail: [0, 0], "
         for text, parts in (
-                ("load_step: 25.125\nbaseline:\n  - {speed: 1}\n", ["it is of another version", "save it again"]),
+                ("load_step: 25.125\nbaseline:\n  - {speed: 1}\n", ["version of the software", "save the file again"]),
                 (head.replace("25.125", "2.925") + point + "indicators: {}}\n",
                  ["its load_step is 2.925 [N.m], expected 25.125"]),
                 (head + point + place + "indicators: {nonsense: [3, 1.0, 0.1, 0.1, 0.0, 1.0]}}\n",
@@ -410,7 +411,7 @@ class Life(tool.ToolTest):
                        "--baseline", "b.yaml")
         # Too few windows to be called sound; and two of one operating point are no reference.
         short = self.write("short.csv", recording(line_after=0.0, seconds=7.0))
-        self.fail_with(1, ["short.csv: too few windows: a verdict needs 5 at one operating point, but has 3"],
+        self.fail_with(1, ["short.csv: too few windows: a verdict needs 5 at one operating point, but there are 3"],
                        "remaining", short, *options, "--hours", 1e6, "--baseline", "b.yaml")
         self.succeed("indicators", short, *options, "--save-baseline", "few.yaml")
         self.fail_with(1, ["new.csv: the healthy reference needs 8 windows at this operating point, but has 3\n",

@@ -25,7 +25,7 @@ struct Evidence
 {
   std::size_t indicator{};
   double value{};     ///< value of the indicator in the window, in the indicator's unit
-  double expected{};  ///< mean of a sound drive at this operating point, in the indicator's unit
+  double expected{};  ///< mean of the indicator for a sound drive at the window's operating point, in its unit
   double score{};     ///< deviation of `value` from `expected` as a score, that is, as a normal deviate [-]
 };
 
@@ -62,7 +62,7 @@ struct Assessment
   /// next most likely causes, most likely first, until their probabilities and that of `cause` add up to SET
   std::array<Alternative, MAX_ALTERNATIVES> alternatives;
   std::size_t evidence_count{};
-  /// indicators beyond the threshold, largest score first; in an alarm at least the one with the largest score
+  /// indicators beyond the threshold, largest score first; in an alarm at least the indicator with the largest score
   std::array<Evidence, MAX_EVIDENCE> evidence;
 };
 

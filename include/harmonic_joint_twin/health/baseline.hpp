@@ -82,8 +82,8 @@ struct Reference
   std::array<double, COMMON_CAUSES> common{};
 };
 
-/// Sums of products of two differences, of an indicator or of its covariates (Place). The sums are over all windows, or
-/// over all pairs of successive windows, that determined the indicator.
+/// Sums of products of two differences, of an indicator or of its covariates (Place), from a mean or between successive
+/// windows. The sums are over all windows, or pairs of windows, that determined the indicator.
 struct IndicatorSums
 {
   int count{};
@@ -159,7 +159,7 @@ struct Deviation
 {
   double expected{};
   double spread{};
-  /// Deviation as a normal deviate: a standard normal variable exceeds it with equal probability. NaN: not compared.
+  /// Normal deviate that a standard normal variable exceeds with the probability of the deviation. NaN: not compared.
   double score{ std::numeric_limits<double>::quiet_NaN() };
   double threshold_factor{};  ///< magnitude of the deviation over the deviation at the threshold of the score [-]
   double freedom{};           ///< degrees of freedom of deviation / spread, v' of Baseline [-]
