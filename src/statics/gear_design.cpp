@@ -184,22 +184,22 @@ void applyRules(const Parameters& from, const GearRequest& request, Designer& de
                "two more teeth than the flexspline");
   designer.set("gear.flexspline_inner_radius", gear.flexspline_inner_radius, given(request.bore_radius, by_size));
   designer.set("gear.rim_thickness", gear.rim_thickness, given(request.rim_thickness, by_size));
-  designer.set("gear.tooth_height_flexspline", gear.tooth_height_flexspline, "in proportion to the pitch");
+  designer.set("gear.tooth_height_flexspline", gear.tooth_height_flexspline, "in proportion to the tooth pitch");
   designer.set("gear.tip_radius_circular_spline", gear.tip_radius_circular_spline, "bore radius + rim + tooth height");
-  designer.set("gear.wave_amplitude", gear.wave_amplitude, "teeth rolling in their spaces");
+  designer.set("gear.wave_amplitude", gear.wave_amplitude, "amplitude at which the teeth roll in their spaces");
   designer.scale("ring.mass", radius * face * section / from_section,
-                 "in proportion to circumference, face width and thickness");
-  designer.scale("ring.tension_stiffness", face * rim / pitch, "in proportion to section over segment length");
+                 "in proportion to the rim's circumference, face width and thickness");
+  designer.scale("ring.tension_stiffness", face * rim / pitch, "in proportion to rim section over segment length");
   designer.scale("ring.bending_stiffness", face * std::pow(rim, 3) / pitch,
-                 "proportional to width * thickness^3 / segment length");
+                 "in proportion to face width * rim thickness^3 / segment length");
   designer.scale("contact.stiffness", face / teeth, "in proportion to face width over number of teeth");
   designer.scale("contact.fit", radius, by_size);
   designer.set("contact.slip_lever",
                0.5 * gear.rim_thickness + radius * (from.contact.slip_lever - 0.5 * from.gear.rim_thickness),
                "half the thickness of the rim plus half the thickness of the race");
   designer.scale("mesh.stiffness", face, "in proportion to the face width");
-  designer.scale("mesh.tangent_length", pitch, "in proportion to the pitch");
-  designer.scale("mesh.engagement_depth", pitch, "in proportion to the pitch");
+  designer.scale("mesh.tangent_length", pitch, "in proportion to the tooth pitch");
+  designer.scale("mesh.engagement_depth", pitch, "in proportion to the tooth pitch");
   designer.scale("mesh.flank_clearance", radius, by_size);
   designer.scale("cup.torsion_stiffness", cube, "in proportion to the cube of the size");
   designer.scale("cup.wall_stiffness", cube, "in proportion to the cube of the size");
