@@ -119,8 +119,8 @@ FeatureScores featureScores(const Deviations& deviations) noexcept
         take(row.feature, indicator, score, score == 0.0 ? 0.0 : deviations[indicator].threshold_factor);
         continue;
       }
-      // The score is the length of the vector of both parts' scores. Its square is reduced by 1, so that noise of two
-      // parts has the mean square score of one indicator.
+      // The square of the line's score is the sum of the squares of both parts' scores, minus 1. Noise of the two parts
+      // then gives the mean square score of one indicator.
       const Deviation& cosine = deviations[cosineIndex(signal, line)];
       const Deviation& sine = deviations[sineIndex(signal, line)];
       const double square = cosine.score * cosine.score + sine.score * sine.score - 1.0;

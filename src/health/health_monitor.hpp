@@ -215,15 +215,15 @@ private:
   static constexpr int COSINE = 6;
   static constexpr int SINE = 7;
   static constexpr double MAX_ERROR = 0.1;  // largest standard error of the slope, as a share of the slope [-]
-  // Largest inflation of the variance of h [-]. It is larger if the branches of the loop lie at different torques.
+  // Largest inflation of the variance of h [-]. The inflation grows if the loop's branches lie at different torques.
   static constexpr double MAX_INFLATION = 10.0;
   static constexpr double DIRECTION_PLAY = 0.1;  // width of the play of the motor angle, far above encoder noise [rad]
-  // Mean square of e's column after regression on the other columns, from which the fit determines e [-]. It exceeds
+  // Mean square of e's column after regression on the other columns, from which the fit determines e [-]. It must exceed
   // (15 urad / 0.44 mrad)^2: the law's residual for a sound drive over the eccentricity in config/real_sensors.yaml.
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
   static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
 
-  /// Adds a ridge for e_c and e_s, larger if the other columns explain theirs. Returns false if samples are too few.
+  /// Adds a ridge for e_c and e_s, larger if other columns explain their column. Returns false if samples are too few.
   bool holdEccentricity() noexcept
   {
     if (!regression_.fit(COLUMNS))
@@ -260,7 +260,7 @@ private:
     extreme_ = rising_ ? std::max(extreme_, joint_torque) : std::min(extreme_, joint_torque);
     if (std::abs(joint_torque - extreme_) > play_)
     {
-      // A maximum is detected a fall of play_ later, so a loop gains at its end the area that it lacks at its start.
+      // A maximum is detected only after a fall by play_: a loop gains at its end the area that it lacks at its start.
       if (rising_)
       {
         area_ += past_first_ ? work_ : 0.0;
@@ -332,7 +332,7 @@ private:
   std::int64_t marks_per_turn_;
   double marks_per_radian_;
 
-  // A place is the motor angle in marks. Its sign is such that the place grows in the direction of travel.
+  // A place is the motor angle in marks. The sign of a place is such that the place grows in the direction of travel.
   bool started_{};
   int direction_{ 1 };
   double place_{};              // place of the last sample

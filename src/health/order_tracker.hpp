@@ -16,7 +16,7 @@
 namespace hjt
 {
 /// Cosine and sine of many multiples of one angle. If a multiple is the sum or the difference of two earlier multiples,
-/// the class multiplies the rotations of these two instead of a call of sine and cosine.
+/// the class multiplies the rotations by these two multiples, and calls neither sine nor cosine.
 template <std::size_t COUNT>
 class AngleMultiples
 {

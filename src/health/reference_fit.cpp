@@ -184,7 +184,7 @@ bool tellsTail(std::size_t indicator) noexcept
          indicator != indexOf(ScalarIndicator::RESIDUAL_CREST) && !isFreeAmplitude(indicator);
 }
 
-/// Histogram with logarithmic classes of a ratio: deviation of a window from all other windows over their spread.
+/// Histogram, with logarithmic classes, of the deviation of a window from all other windows over their spread.
 struct Residuals
 {
   static constexpr std::size_t CLASSES = 48;

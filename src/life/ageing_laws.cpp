@@ -27,7 +27,7 @@ double stressIntensityRange(const AgeingParameters& parameters, const Revolution
   const double edge = (x > 0.0 ? std::sqrt(std::tan(angle) / angle) : 1.0) / std::cos(angle);
   const double by_bending = edge * (0.923 + 0.199 * std::pow(lean, 4));
   const double by_tension = edge * (0.752 + 2.02 * x + 0.37 * std::pow(lean, 3));
-  // Rotation of the section by the crack over the rotation without a crack. With this ratio the moment decreases.
+  // Rotation of the section by the crack over the rotation without a crack. The moment decreases as this ratio grows.
   const double opening = std::pow(x / (1.0 - x), 2) * (5.93 + x * (-19.69 + x * (37.14 + x * (-35.84 + x * 13.12))));
   const double bending_left = 1.0 / (1.0 + 2.0 * (1.0 - POISSON * POISSON) * gear.rim_thickness /
                                                toothSpace(gear, parameters.stress) * opening);

@@ -137,7 +137,7 @@ constexpr double RATE_SCATTER = 0.25;
 /// (docs/life.md).
 constexpr double TRANSITION_SCATTER = 0.3;
 
-/// Differences of one drive from the nominal drive. They cannot be measured from outside the drive.
+/// Differences of one drive from the nominal drive. Sensors outside the drive cannot measure these differences.
 struct UnitVariation
 {
   double flank_factor{ 1.0 };      ///< flank wear over that of the nominal drive [-]
@@ -145,7 +145,7 @@ struct UnitVariation
   double bearing_life{};           ///< turns at rated torque until the bearing's first spall
   double spall_growth{};           ///< turns from the first spall to the end of use, as a share of bearing_life [-]
   double strength{ 1.0 };          ///< fatigue strength of the flexspline over the median [-]
-  double transition{ 1.0 };        ///< strength of the transition to the cup over that of other places [-]
+  double transition{ 1.0 };        ///< strength of the transition to the cup over the strength of other places [-]
   std::uint32_t fillings{};        ///< seed of the differences between fillings of grease; 0: no differences
 };
 

@@ -24,7 +24,7 @@ public:
   {
   }
 
-  /// Change of each field of `age` in an hour, at this age of the drive.
+  /// Change of each field of DriveAge in an hour, for a drive with the age `age`.
   DriveAge rates(const UnitVariation& variation, const DriveAge& age) const;
 
   /// Increase of a new drive's Miner's sums by place [1/h]. `strength`: fatigue strength over the median of all drives.

@@ -98,7 +98,7 @@ struct WearTrends
 };
 
 /// Wear changes the loads that cause wear. The equivalent wear depth is the depth that equal use would cause with the
-/// loads of the new drive. This class gives the equivalent depth as a function of the real depth, linear between nodes.
+/// loads of the new drive. This class gives it as a function of the real wear depth, linear between and beyond nodes.
 class LoadFeedback
 {
 public:

@@ -125,7 +125,7 @@ private:
   std::array<double, STRESS_PLACES> notch_factor_{};
 };
 
-/// Miner's sum over the loads at one place. Loads below the endurance limit do more damage if another load exceeds it.
+/// Miner's sum over the loads at a place. Loads below the endurance limit do more damage if a load exceeds the limit.
 class MinerSum
 {
 public:

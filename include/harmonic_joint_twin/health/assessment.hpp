@@ -34,7 +34,7 @@ struct Alternative
 {
   Cause cause{};
   double confidence{};          ///< probability of the cause [-]
-  double severity{};            ///< mean severity of the fault, if it is the cause; 0 if the cause is NONE [-]
+  double severity{};            ///< mean severity of the fault, if this fault is the cause; 0 for NONE [-]
   double severity_deviation{};  ///< standard deviation of the severity [-]
 };
 

@@ -18,7 +18,7 @@ struct SignatureSet;
 struct CarriedError
 {
   double deviation{ 1e30 };  ///< rms difference for a drive like the twin, in the indicator's unit; 1e30: not known
-  double share{};  ///< further rms difference over |drive - twin|; for a line over that of all its signal's lines [-]
+  double share{};  ///< further rms difference over |drive - twin|; for a line |drive - twin| of its signal's lines [-]
   double freedom{ 1.0 };  ///< degrees of freedom of the estimates `deviation` and `share` [-]
 };
 
@@ -257,7 +257,7 @@ public:
   /// `signatures`: set with the errors of carried references and the causes that have patterns.
   Baseline(const Parameters& parameters, std::shared_ptr<const SignatureSet> signatures);
 
-  /// Sets the reference, for example from a file, and ends learning. `carried`: whether it comes from another motion.
+  /// Sets the reference, for example from a file, and ends learning. `carried`: whether it is from another motion.
   void setReference(std::vector<ReferenceBin> bins, bool carried = false);
 
   void reset() noexcept;  ///< forgets all windows and a learned reference; a reference from setReference stays

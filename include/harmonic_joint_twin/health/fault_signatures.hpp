@@ -208,7 +208,7 @@ struct CausePosterior
 {
   /// Probability of each cause, given that the drive is not sound [-]. NONE: the cause is no fault with a signature.
   std::array<double, CAUSE_COUNT> probability{};
-  std::array<double, CAUSE_COUNT> severity{};            ///< mean severity of each fault, if it is the cause [-]
+  std::array<double, CAUSE_COUNT> severity{};  ///< mean severity of each fault, if this fault is the cause [-]
   std::array<double, CAUSE_COUNT> severity_deviation{};  ///< standard deviation of the severity [-]
 };
 

@@ -45,7 +45,7 @@ struct ToothStress
   std::array<double, STRESS_PLACES> shear{};
 
   /// Stress cycle at a place < STRESS_PLACES: range of the stress over all teeth at this instant. If all teeth are
-  /// equal, this is also the range at one tooth over a turn.
+  /// equal, this range is also the range at one tooth over a turn.
   StressCycle cycle(std::size_t place) const noexcept
   {
     const auto [lowest, highest] = std::minmax_element(normal[place].begin(), normal[place].end());
