@@ -218,7 +218,7 @@ private:
   // Largest inflation of the variance of h [-]. The inflation grows if the loop's branches lie at different torques.
   static constexpr double MAX_INFLATION = 10.0;
   static constexpr double DIRECTION_PLAY = 0.1;  // width of the play of the motor angle, far above encoder noise [rad]
-  // Mean square of e's column after regression on the other columns, from which the fit determines e [-]. It must exceed
+  // Mean square that e's column needs after regression on the other columns, to determine e [-]. The value exceeds
   // (15 urad / 0.44 mrad)^2: the law's residual for a sound drive over the eccentricity in config/real_sensors.yaml.
   static constexpr double ECCENTRICITY_LEFT = 1.5e-3;
   static constexpr double LEAST_TOLD = 1e-6;  // lower bound of the mean square of e's column, for the ridge [-]
