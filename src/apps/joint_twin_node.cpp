@@ -78,8 +78,8 @@ bool isKnownToMaster()
                      [&](const std::string& topic) { return hasThisNode(state[0], topic); });
 }
 
-/// Waits until ROS shuts the node down. @returns false if another master has replaced the first one. A new master does
-/// not know the node's topics. Only a new start of the node sets parameters and registrations again.
+/// Waits until ROS shuts the node down. @returns false if a new ROS master has replaced the first one. A new master
+/// does not know the node's topics; only a new start of the node sets parameters and registrations again.
 bool waitForShutdownOrNewMaster()
 {
   constexpr int LOOKS = 100;  // number of polls of ros::ok() between two questions to the master
@@ -211,7 +211,7 @@ void runJoint(ros::NodeHandle& node, const hjt::FoundParameters& found)
   hjt::readDefaultConfiguration(hjt::configurationDirectory("").string(), shipped);
   warnOfParameters(found, node.getNamespace(), { shipped });
   hjt::ParameterMap map = hjt::readParameterServer(node.getNamespace());
-  // A configuration that a launch file has loaded is complete. Without one, the node uses the shipped configuration.
+  // A configuration from a launch file is complete. Without a launch file the node uses the shipped configuration.
   if (found.areGiven(map))
   {
     map.merge(shipped);
@@ -245,7 +245,7 @@ std::vector<std::string> itemsOf(const std::string& list)
   return items;
 }
 
-/// Reference of each joint, from reports about the arm when it was sound. @throws InputError if a report lacks it.
+/// Reference of each joint, from reports about the sound arm. @throws InputError if a joint is in none of the reports.
 std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::ArmDescription& arm,
                                            const std::vector<hjt::Parameters>& parameters)
 {
@@ -269,7 +269,7 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
   return joints;
 }
 
-/// Parameters of every drive: `maps`, changed by the parameters of this node. Writes them to the parameter server too.
+/// Parameters of every drive: `maps`, changed by the parameters of this node. Also writes them to the parameter server.
 std::vector<hjt::Parameters> drivesOf(const hjt::ArmDescription& arm, const hjt::ParameterMap& overrides,
                                       std::vector<hjt::ParameterMap> maps)
 {
@@ -330,7 +330,7 @@ hjt::ArmWatch::MakeCandidates otherArms(const hjt::ArmDescription& arm, const st
   };
 }
 
-/// Whether the node simulates the arm itself. @throws ParameterError if input.mode is missing.
+/// Whether the node simulates the arm in place of a robot. @throws ParameterError if input.mode is missing.
 bool inPlaceOfArm(const hjt::ParameterMap& overrides)
 {
   const auto mode = overrides.find("input.mode");
@@ -344,7 +344,7 @@ bool inPlaceOfArm(const hjt::ParameterMap& overrides)
   return text != nullptr && *text == "commands";
 }
 
-/// Gives the joints and the base frame the names that a driver with these affixes uses.
+/// Adds the driver's prefix and suffix to the names of the arm's joints and of its base frame.
 void nameAsInMessages(const hjt::JointAffixes& affixes, hjt::ArmDescription& arm)
 {
   for (hjt::ArmJoint& joint : arm.joints)

@@ -47,8 +47,8 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 }
 
 /// Records given topics, each message at the time of reception. `rosbag record` is unsuitable: its queues of 100
-/// messages lose joint states if the machine stalls for 0.1 s. With `--all` on a simulated clock it searches for topics
-/// only once the clock runs, and misses the first messages.
+/// messages lose joint states if the machine stalls for 0.1 s. With `--all` on a simulated clock `rosbag record`
+/// searches for topics only once the clock runs, and misses the first messages.
 ///
 /// Received messages wait in memory for the disk, up to a number of bytes. Beyond this number messages are lost and
 /// counted.
@@ -109,8 +109,8 @@ private:
     arrived_.notify_one();
   }
 
-  /// Writes the waiting messages, or sleeps if no message waits. A message that arrives before the clock has started
-  /// gets the first time of the clock. A twin that received the clock earlier can send such messages.
+  /// Writes the waiting messages, or sleeps if no message waits. A twin whose clock started before that of the recorder
+  /// can send messages too early for the recorder. Such a message gets the recorder's first time of the clock.
   void writeWaiting()
   {
     constexpr std::chrono::milliseconds MOMENT{ 50 };

@@ -35,7 +35,7 @@ void takeSetPoint(const Values& values, std::vector<JointMotion>& joints)
   }
 }
 
-/// Time of a stamp in whole nanoseconds, as in a recording [s].
+/// Time since EPOCH of a stamp [s].
 double timeOf(Stamp stamp)
 {
   return toSeconds(stamp - EPOCH);

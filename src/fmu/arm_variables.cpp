@@ -123,7 +123,7 @@ std::size_t countOf(const ParameterMap& map, const std::string& list, const std:
   return count;
 }
 
-constexpr Range ANGLES{ -100.0, 100.0 };  // [rad]
+constexpr Range ANGLES{ -100.0, 100.0 };  // allowed angles of a joint [rad]
 
 std::vector<double> gainsOf(const ArmDescription& arm, double JointGains::*gain)
 {

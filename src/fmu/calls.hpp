@@ -16,7 +16,7 @@
 /// the importer's log. Nothing is printed.
 namespace hjt::fmu
 {
-/// Sets the default floating-point environment during its lifetime. The importer's may trap, or flush denormal numbers.
+/// Sets the default floating-point environment during its lifetime. The importer's may trap or flush denormal numbers.
 class UsualArithmetic
 {
 public:
@@ -267,7 +267,7 @@ inline Status deserialise(Instance* instance, const unsigned char* bytes, std::s
                  });
 }
 
-/// Does a step of the importer. @returns false if the instance had to keep its last converged state.
+/// Does the importer's step from `at` over `length` [s]. @returns false if the twin kept its last converged state.
 inline bool doStep(Instance& instance, double at, double length)
 {
   const bool converged = instance.step(at, length);

@@ -22,14 +22,14 @@ public:
   /// `base`, changed by the parameters and faults that the importer has set. @throws ParameterError.
   Parameters parameters(const Parameters& base, const Values& values) const;
 
-  /// Prepares the inputs for the first step: the twin has received all except the load. `brake_engaged`: initial brake.
+  /// Notes before the first step that the twin has all inputs but the load. `brake_engaged`: state of the twin's brake.
   void begin(const Values& values, bool brake_engaged);
 
-  /// Gives the twin those inputs that have changed, from `instant` on, except the motor torque.
+  /// Gives the twin the changed inputs, except the motor torque. The inputs act from `instant` on.
   void giveInputs(Stamp instant, const Values& values, Twin& twin);
   double motorTorque(const Values& values) const noexcept { return values[first_ + MOTOR_TORQUE].numbers[0]; }
 
-  void moved() noexcept { teeth_known_ = false; }  ///< marks the teeth's values as outdated after a step
+  void moved() noexcept { teeth_known_ = false; }  ///< marks the teeth's values as outdated; to call after a step
   bool read(std::size_t reference, Twin& twin, Values& values);
   bool marks(std::size_t reference, const Twin& twin) const;  ///< see Simulation::marks
 

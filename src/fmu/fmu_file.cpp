@@ -93,7 +93,7 @@ std::string unitDefinition(const std::string& unit)
   return text + (row->offset != 0.0 ? attribute("offset", numberText(row->offset)) : "") + "/></Unit>\n";
 }
 
-/// Attribute for a bound of the variable, written as its type requires; empty if it has no bound.
+/// Attribute `name` with a bound of the variable, written as the variable's type requires; empty without a bound.
 std::string bound(const char* name, const FmuVariable& variable, double value)
 {
   const bool open = value <= -std::numeric_limits<double>::max() || value >= std::numeric_limits<double>::max();

@@ -251,8 +251,8 @@ void Instance::setTexts(const References& of, const char* const* texts)
   changed(differs);
 }
 
-/// Must be called after values were set. Before the start, values that differ need a new simulation. Later inputs act
-/// with the next step.
+/// Must be called after values were set. `differs`: whether a value changed. Before the start, a changed value needs a
+/// new simulation. Inputs that are set later act with the next step.
 void Instance::changed(bool differs)
 {
   if (differs && state_.mode != Mode::STEP)

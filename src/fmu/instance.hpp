@@ -32,7 +32,7 @@ struct References
   Version version;
 };
 
-/// Mode of an instance, which says which calls FMI allows.
+/// Mode of an instance, by which FMI allows or forbids calls.
 enum class Mode
 {
   INSTANTIATED,
@@ -42,8 +42,8 @@ enum class Mode
 };
 
 /// An instance of a unit, which the functions of FMI use: its values, its mode and its simulation. The simulation is
-/// made at the end of the initialisation, or when an output is read before. Every function throws CallError, and also
-/// ParameterError if the parameters are invalid for a twin.
+/// made at the end of the initialisation, or when an output is read before this end. Every function throws CallError,
+/// and also ParameterError if the parameters are invalid for a twin.
 class Instance
 {
 public:

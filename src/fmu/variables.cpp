@@ -121,7 +121,7 @@ struct ParameterMaker
   std::vector<FmuVariable>& all;
 };
 
-/// Configured fault of a kind, if it acts from the start on; otherwise severity 0 at the first allowed place.
+/// Configured fault of a kind that acts from the start on. If there is none: severity 0 at the first allowed place.
 Fault startingFault(FaultKind kind, const Parameters& parameters)
 {
   const auto found = std::find_if(parameters.faults.begin(), parameters.faults.end(),

@@ -61,7 +61,7 @@ enum DriveReference : unsigned
   LOAD_TORQUE,
   TEMPERATURE,
   BRAKE,
-  FIRST_FAULT,  ///< first of the severities, of which each FaultKind has one
+  FIRST_FAULT,  ///< severity of the first FaultKind; the severities of the other kinds follow
   FIRST_OUTPUT = FIRST_FAULT + FAULT_KINDS
 };
 

@@ -64,7 +64,7 @@ void applyMemoryLock(bool lock_memory, RealtimeState& state)
   {
     return;
   }
-  // The loop does not allocate, so it does not need later memory. Locking future memory too would fail at a low limit.
+  // The present memory suffices, because the loop does not allocate. Locking future memory too can exceed a low limit.
   if (mlockall(MCL_CURRENT) == 0)
   {
     state.memory = "locked";

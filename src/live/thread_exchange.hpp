@@ -17,14 +17,14 @@ namespace hjt
 struct LiveInput
 {
   TwinInput input;
-  std::size_t joint{};  ///< index of the joint that gets the input; 0 with one twin
+  std::size_t joint{};  ///< index of the joint that gets the input; 0 if there is one twin
 
   Stamp stamp() const noexcept { return stampOf(input); }
   const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< the input; null if it is a fault
   bool isOf(InputKind kind) const noexcept { return value() != nullptr && value()->kind == kind; }
 };
 
-/// Queue of inputs from callbacks to the loop. A callback may wait for another one or for the loop. The loop never
+/// Queue of inputs from callbacks to the loop. A callback may wait for another callback or for the loop. The loop never
 /// waits.
 class Inbox
 {
@@ -75,8 +75,8 @@ private:
   std::atomic<std::uint64_t> overflow_{ 0 };
 };
 
-/// Ring buffer of preallocated messages between one writer and one reader. Writer and reader never wait. Messages are
-/// filled and read in their slots, so that their arrays are never copied, moved or resized.
+/// Ring buffer of preallocated messages between one writer and one reader, which never wait. A message is filled and
+/// read in its slot, so that its arrays are never copied, moved or resized.
 template <class Message>
 class SlotRing
 {

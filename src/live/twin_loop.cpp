@@ -20,16 +20,16 @@ using std::chrono::steady_clock;
 
 /// Period of the loop in wall clock time.
 constexpr milliseconds CYCLE_PERIOD{ 1 };
-/// Largest value of the shortest sleep. With a sleep, messages of several instants go out together, and threads wake
-/// less often.
+/// Upper limit of shortestPause. A sleep collects the messages of several instants, so that threads wake less often
+/// than once at every instant.
 constexpr milliseconds SHORT_PAUSE{ 4 };
-/// Longest sleep while no output is due. It limits the time in which a request is answered.
+/// Longest sleep while no output is due. The sleep delays the answer to a user's request.
 constexpr milliseconds MAX_PAUSE{ 50 };
 /// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, so that a loop that is behind catches up.
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
 /// Wall clock time after which a cycle begins no further step, so that a slow solver does not delay requests.
 constexpr milliseconds LONGEST_WORK{ 100 };
-/// Largest backward step of the clock that counts as time synchronisation [ns]. The loop then waits for the clock.
+/// Largest backward step of the clock that counts as time synchronisation [ns]. After the step the loop waits.
 constexpr Stamp CLOCK_JUMP_TOLERANCE = 100'000'000;
 /// Longest time for which a request of a user waits for the loop.
 constexpr milliseconds REQUEST_TIMEOUT{ 2000 };
@@ -41,7 +41,7 @@ Stamp nanoseconds(steady_clock::duration duration)
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// Shortest pause between two cycles, short compared with the twin's delay.
+/// Shortest pause between two cycles: a fifth of the twin's delay, from CYCLE_PERIOD to SHORT_PAUSE.
 steady_clock::duration shortestPause(Stamp input_delay)
 {
   constexpr int SHARE = 5;

@@ -120,13 +120,13 @@ enum class LoopState : std::uint8_t
 /// Timing of the loop since the last start or reset.
 struct LoopTiming
 {
-  LatencyHistogram wake_up;          ///< delay of a cycle's beginning after the requested wake-up, in wall clock time
-  LatencyHistogram lateness;         ///< time by which a cycle reached its oldest instant later than it was due
+  LatencyHistogram wake_up;          ///< wall clock time from the requested wake-up to the beginning of a cycle [ns]
+  LatencyHistogram lateness;         ///< delay of the oldest instant of a cycle after the time when it was due [ns]
   std::uint64_t missed_deadlines{};  ///< number of cycles whose lateness exceeded realtime.deadline
   Stamp longest_cycle{};             ///< longest cycle in wall clock time [ns]
   Stamp busy{};                      ///< sum of the lengths of all cycles in wall clock time [ns]
   Stamp elapsed{};                   ///< wall clock time since the start or reset [ns]
-  Stamp simulated{};                 ///< simulated time [ns]
+  Stamp simulated{};                 ///< simulated time since the start or reset [ns]
 
   /// Simulated time over wall clock time; 0 at the start [-].
   double realTimeFactor() const noexcept { return shareOfElapsed(simulated); }
@@ -152,7 +152,7 @@ struct LoopStatus
   LoopState state{};
   Stamp clock{};        ///< last reading of the clock [ns]
   Stamp twin_stamp{};   ///< instant that the twin has reached [ns]
-  Stamp lag{};          ///< time by which the twin is behind the instant that it should have reached [ns]
+  Stamp lag{};          ///< time from the reached instant to the one that the twin should have reached [ns]
   Stamp largest_lag{};  ///< largest lag since the last start or reset [ns]
   std::uint64_t cycles{};
   std::uint64_t overruns{};     ///< number of cycles that worked longer than their period
@@ -168,8 +168,7 @@ struct LoopStatus
   LoopTiming timing;
 };
 
-/// Interface between a loop and the twin, or the twins with common steps, that it advances. No member may block or
-/// allocate.
+/// Interface by which a loop advances one twin, or several twins with common steps. No member may block or allocate.
 class Advanced
 {
 public:
@@ -227,8 +226,8 @@ public:
   /// block or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
-  /// Largest difference of successive readings of the clock that is not a jump [ns]. Another recording or a suspended
-  /// machine causes a jump.
+  /// Largest difference of successive readings of the clock that is not a jump [ns]. Jumps come, for example, from the
+  /// start of another recording or from a suspended machine.
   static constexpr Stamp MAX_CLOCK_STEP = 10'000'000'000;
 
   /// Starts the thread. Without `after_cycle` every instant has an output. `parameters`: those of the twin, or of one

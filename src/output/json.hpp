@@ -49,7 +49,7 @@ public:
   {
   }
 
-  /// The member of this name, which is added if it is missing. A dot in `path` leads to a member of a member
+  /// The member at `path`, which is added if it is missing. A dot in `path` leads to a member of a member
   /// ("peak.torque").
   Json& operator[](const std::string& path);
 

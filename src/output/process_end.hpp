@@ -47,7 +47,7 @@ private:
   static void catchSignal(Caught& caught, int signal);
 
   const bool is_outer_;
-  std::array<Caught, 3> caught_{};  // caught signals; number 0 stands for none
+  std::array<Caught, 3> caught_{};  // caught signals; a signal number 0 stands for none
 };
 
 /// Start of the simulated time without a recording: 2001-09-09 01:46:40 UTC, so that stamps are valid ROS times.

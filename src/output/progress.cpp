@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds BAR_PERIOD{ 200 };
 constexpr milliseconds FIRST_LINE{ 2000 };
 constexpr milliseconds LINE_PERIOD{ 5000 };
-// Time in which the steps of a fast loop share one reading of the clock.
+// Time in which all steps of a fast loop share one reading of the clock.
 constexpr milliseconds LOOK_PERIOD{ 1 };
 constexpr unsigned MOST_CALLS_PER_LOOK = 64;
 constexpr int BAR_WIDTH = 40;

@@ -9,8 +9,8 @@
 
 namespace hjt
 {
-/// Prints the progress of a long step to stderr: a bar on a terminal, elsewhere a line every few seconds. Prints
-/// nothing for a quick step.
+/// Prints the progress of a task to stderr: a bar on a terminal, elsewhere a line every few seconds. Prints nothing for
+/// a task that ends before the first bar or line is due.
 class Progress
 {
 public:
@@ -47,7 +47,7 @@ struct Watch
   /// Called when a step with this name begins; returns the function that receives the step's progress, 0 ... 1.
   std::function<std::function<void(double)>(const std::string&)> progress{ [](const std::string&)
                                                                            { return [](double) {}; } };
-  /// Called at every row and between steps. If it returns true, the function closes its files and ends.
+  /// Called at every row and between steps. If the callback returns true, the function closes its files and ends.
   std::function<bool()> stopped{ [] { return false; } };
   /// Receives a note for the user: a sentence without full stop.
   std::function<void(const std::string&)> notice{ [](const std::string&) {} };

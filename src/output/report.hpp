@@ -38,7 +38,7 @@ struct Column
 {
   std::string key;                        ///< key in documents and files; empty: the column is not in them
   std::function<Json(const Row&)> value;  ///< member of a row, or function that computes the value from a row
-  std::string heading{};                  ///< heading with the unit ("torque [N.m]"); empty: not shown to people
+  std::string heading{};                  ///< heading with unit ("torque [N.m]"); empty: people do not see the column
 };
 
 /// A table with named columns, for people, as a document or as a file.

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Names of the values of an enumeration in the configuration. The type of the enumeration selects the overload.
+/// Texts in the configuration for the values of an enumeration. The type of the enumeration selects the overload.
 template <class Choice, std::size_t N>
 using ChoiceNames = std::array<std::pair<const char*, Choice>, N>;
 

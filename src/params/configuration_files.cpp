@@ -54,7 +54,7 @@ fs::path libraryDirectory()
 fs::path packageDirectory()
 {
   // The executable PREFIX/lib/harmonic_joint_twin/joint_twin and the library PREFIX/lib/libharmonic_joint_twin_core.so
-  // belong to PREFIX/share/harmonic_joint_twin. In a development space, its `config` is a link.
+  // belong to PREFIX/share/harmonic_joint_twin, whose `config` is a link in a development space.
   std::error_code error;
   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
   const fs::path libraries = libraryDirectory();
@@ -117,7 +117,7 @@ namespace
 {
 using Value = decltype(ParameterValue::value);
 
-/// Whether PyYAML reads the text as a number that a user hardly meant: octal, hexadecimal, binary, 1_000 or 1:30.
+/// Whether PyYAML reads the text as a number that a user hardly meant, for example 017, 0x11, 0b11, 1_000 or 1:30.
 bool isTreacherous(const std::string& text)
 {
   static const std::regex NUMBER(R"([-+]?(0[0-7_]+|0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)"
@@ -149,7 +149,7 @@ std::string originOf(const std::string& source, const YAML::Node& node)
   return source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// Value of an unquoted text by the rules of rosparam, except that 1e-6, a text in rosparam, is a number.
+/// Value of an unquoted text by the rules of rosparam, but 1e-6 is a number here and a text in rosparam.
 Value plainValue(const std::string& text, const std::string& origin, const std::string& key)
 {
   if (isOneOf(text, { "", "~", "null", "Null", "NULL" }))

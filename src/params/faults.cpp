@@ -18,9 +18,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double LATEST_ONSET = 1e9;  // [s]
+constexpr double LATEST_ONSET = 1e9;  // largest allowed onset of a fault [s]
 
-/// Orders at which parts of the drive repeat, with their names in FaultDescription::shows.
+/// Orders of moving parts of the drive, each with the name in braces that stands for it in FaultDescription::shows.
 std::array<std::pair<const char*, double>, 6> orders(const Parameters& parameters)
 {
   const double balls = parameters.bearing.balls;
@@ -126,7 +126,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters)
 
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept
 {
-  // For NaN these comparisons are false.
+  // Each of these comparisons is false if severity or onset is NaN.
   return static_cast<std::size_t>(fault.kind) < FAULT_KINDS && fault.severity >= 0.0 && fault.severity <= 1.0 &&
          fault.place >= firstPlace(fault.kind) && fault.place <= lastPlace(fault.kind, parameters) &&
          fault.onset >= 0.0 && fault.onset <= LATEST_ONSET;

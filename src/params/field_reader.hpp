@@ -172,7 +172,7 @@ private:
     std::size_t distance = std::max<std::size_t>(2, withoutSection(unknown).size() / 3) + 1;
     for (const std::string& key : known)
     {
-      // A right name in a wrong section counts as one edit.
+      // A right name in a wrong section counts as one edit of the key.
       const bool other_section = withoutSection(key) == withoutSection(unknown);
       const std::size_t edits = other_section ? 1 : editDistance(unknown, key);
       if (edits < distance)
@@ -184,7 +184,7 @@ private:
     return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
   }
 
-  /// Required form of the value of `key` if `key` is a section or the list of faults; else empty.
+  /// Required form of the value of `key`, for error messages; empty unless `key` is a section or the list of faults.
   std::string groupKind(const std::string& key) const
   {
     const auto below = known_.lower_bound(key + '.');

@@ -113,7 +113,7 @@ void visitSolver(P& p, Visitor& visit)
   visit("solver.rate", "Hz", p.solver.rate, Range{ 100.0, 1e6 },
         ofOthers("steps per simulated second; a step must be a whole number of nanoseconds"));
   visit("solver.force_tolerance", "N", p.solver.force_tolerance, Range{ 1e-9, 1.0 },
-        ofOthers("largest allowed out-of-balance force on a tooth; ten times this force in a step of motion"));
+        ofOthers("largest allowed out-of-balance force on a tooth; a step of motion may leave ten times this force"));
   visit("solver.max_iterations", "-", p.solver.max_iterations, Range{ 1, 1000 },
         ofOthers("largest number of Newton iterations of a solve; 20 when a response surface is built"));
   visit("solver.max_step_cuts", "-", p.solver.max_step_cuts, Range{ 0, 30 },
@@ -150,7 +150,8 @@ void visitSensors(P& p, Visitor& visit)
         ofOthers("rms noise of the motor torque estimated from the current, in each step"));
   visit("sensors.torque_resolution", "N.m", p.sensors.torque_resolution, Range{ 0, 1000 },
         ofOthers("resolution of the motor torque estimated from the current; 0 = no rounding"));
-  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 }, ofOthers("delay of all readings, in whole steps"));
+  visit("sensors.delay", "s", p.sensors.delay, Range{ 0, 0.1 },
+        ofOthers("delay of all sensor readings, rounded to whole steps"));
   visit("sensors.noise_seed", "-", p.sensors.noise_seed, Range{ 0, 2147483647 },
         ofOthers("seed of the noise; equal seeds give equal noise at equal stamps"));
 }
@@ -179,7 +180,7 @@ void visitIndicators(P& p, Visitor& visit)
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
         ofOthers("number of motor turns at steady speed in a window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },
-        ofOthers("longest duration of a window, which then ends even if it has fewer turns"));
+        ofOthers("longest duration of a window; after this time a window ends with any number of turns"));
   visit("indicators.least_speed", "rad/s", p.indicators.least_speed, Range{ 1e-3, 1e3 },
         ofOthers("motor speed below which the joint counts as at rest"));
   visit("indicators.speed_change", "-", p.indicators.speed_change, Range{ 1e-3, 1.0 },
@@ -275,8 +276,8 @@ template <class P, class Visitor>
 void visitInput(P& p, Visitor& visit)
 {
   visit("input.mode", p.input.mode,
-        ofOthers("commands: commanded torques drive the twin; torque, motion: the robot's measured torque or motion "
-                 "drives it; observer: measured torque and motion drive it"));
+        ofOthers("signals that drive the twin; commands: commanded torques; torque: the robot's measured torque; "
+                 "motion: the robot's measured motion; observer: measured torque and motion"));
   visit("input.command_timeout", "s", p.input.command_timeout, Range{ 1e-3, NO_LIMIT },
         ofOthers("age above which a torque command counts as zero"));
   visit("input.delay", "s", p.input.delay, Range{ 0.0, 10.0 },
@@ -296,23 +297,23 @@ void visitTelemetry(P& p, Visitor& visit)
   visit("telemetry.current_offset", "A", p.telemetry.current_offset, Range{ -1000.0, 1000.0 },
         ofOthers("offset of the measured current"));
   visit("telemetry.presliding_angle", "rad", p.telemetry.presliding_angle, Range{ 1e-9, 1.0 },
-        ofOthers("motor angle after a reversal over which friction builds up, with the torsion of the gear"));
+        ofOthers("motor angle after a reversal over which friction builds up, including the torsion of the gear"));
   visit("telemetry.lasting_share", "-", p.telemetry.lasting_share, Range{ 0.0, 1.0 },
         ofOthers("share of the friction that remains at rest and that a small motion does not reverse"));
   visit("telemetry.inertia_in_load", "kg.m^2", p.telemetry.inertia_in_load, Range{ 0.0, 10.0 },
         ofOthers("part of the motor's inertia whose torque the recorded load torque already contains"));
   visit("telemetry.ripple_circular_spline_2", "N.m", p.telemetry.ripple_circular_spline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of 2 cycles per turn of the motor relative to the "
-                 "circular spline"));
+        ofOthers("kinematic error times stiffness: amplitudes of cosine and sine at 2 cycles per turn of the motor "
+                 "relative to the circular spline"));
   visit("telemetry.ripple_flexspline_2", "N.m", p.telemetry.ripple_flexspline_2, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of 2 cycles per turn of the motor relative to the "
-                 "flexspline"));
+        ofOthers("kinematic error times stiffness: amplitudes of cosine and sine at 2 cycles per turn of the motor "
+                 "relative to the flexspline"));
   visit("telemetry.ripple_circular_spline_4", "N.m", p.telemetry.ripple_circular_spline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of 4 cycles per turn of the motor relative to the "
-                 "circular spline"));
+        ofOthers("kinematic error times stiffness: amplitudes of cosine and sine at 4 cycles per turn of the motor "
+                 "relative to the circular spline"));
   visit("telemetry.ripple_flexspline_4", "N.m", p.telemetry.ripple_flexspline_4, Range{ -1000.0, 1000.0 },
-        ofOthers("kinematic error times stiffness: cosine and sine of 4 cycles per turn of the motor relative to the "
-                 "flexspline"));
+        ofOthers("kinematic error times stiffness: amplitudes of cosine and sine at 4 cycles per turn of the motor "
+                 "relative to the flexspline"));
   visit("telemetry.ripple_resonance", "Hz", p.telemetry.ripple_resonance, Range{ 0.1, 1000.0 },
         ofOthers("resonance of the load on the joint's stiffness; far below this frequency the load follows the "
                  "kinematic error, far above it the load is at rest"));
@@ -344,7 +345,7 @@ void visitObserver(P& p, Visitor& visit)
         ofOthers("white noise of the motor torque estimated from the current: rms noise of a reading times the square "
                  "root of the sampling period"));
   visit("observer.load_noise", "N.m.sqrt(s)", p.observer.load_noise, Range{ 0.0, 1e6 },
-        ofOthers("white noise of the load torque: rms of a reading's noise times the square root of the period"));
+        ofOthers("white noise of the load torque: rms noise of a reading times sqrt(sampling period)"));
   visit("observer.disturbance_growth", "N.m/sqrt(s)", p.observer.disturbance_growth, Range{ 1e-9, 1e3 },
         ofOthers("rms change of the unmodelled torque at the motor in a second"));
 }
@@ -357,8 +358,8 @@ void visitComparison(P& p, Visitor& visit)
   visit("comparison.compliance_tolerance", "-", p.comparison.compliance_tolerance, Range{ 0.01, 10.0 },
         ofOthers("largest relative difference of a sound joint's torsion from that of the twin"));
   visit("comparison.repeat_tolerance", "-", p.comparison.repeat_tolerance, Range{ 0.01, 10.0 },
-        ofOthers(
-            "largest relative change of a sound joint's torsion between recordings, and of friction between joints"));
+        ofOthers("largest relative change of a sound joint's torsion between two recordings, and largest relative "
+                 "deviation of its friction factor from the median of the joints"));
 }
 
 template <class P, class Visitor>
@@ -438,9 +439,9 @@ struct FieldRow
   std::string key;
   std::string type;  ///< type: float, int, N floats, bool or text
   std::string unit;
-  std::optional<Range> range;        ///< range of a number
-  std::vector<std::string> choices;  ///< allowed values of a choice
-  std::string value;                 ///< value in YAML
+  std::optional<Range> range;        ///< range of the number; none for another type
+  std::vector<std::string> choices;  ///< allowed texts of a choice; empty for another type
+  std::string value;                 ///< value as text of YAML
   Meaning meaning;
 };
 

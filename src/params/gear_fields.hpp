@@ -21,7 +21,7 @@ enum class Shapes
 /// Meaning of a parameter, and the response surfaces that the parameter changes: by default all surfaces.
 struct Meaning
 {
-  // not explicit, because most rows of the table give only a text
+  // not explicit, because most rows of the table give only the text
   Meaning(const char* meaning, Shapes shaped = Shapes::SURFACE) : text(meaning), shapes(shaped) {}
 
   const char* text;
@@ -39,7 +39,7 @@ inline Meaning ofOthers(const char* text)
 }
 
 constexpr double NO_LIMIT = std::numeric_limits<double>::max();
-constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< range of errors of manufacture and of the fit [m]
+constexpr Range ERROR_SHIFT{ -1e-4, 1e-4 };  ///< range of errors of manufacture and of contact.fit [m]
 
 template <class P, class Visitor>
 void visitGear(P& p, Visitor& visit)
@@ -47,7 +47,7 @@ void visitGear(P& p, Visitor& visit)
   visit("gear.teeth_flexspline", "-", p.gear.teeth_flexspline, Range{ 8, 4000 },
         "number of teeth of the flexspline, even");
   visit("gear.teeth_circular_spline", "-", p.gear.teeth_circular_spline, Range{ 10, 4002 },
-        "number of teeth of the circular spline: two more than the flexspline");
+        "number of teeth of the circular spline: gear.teeth_flexspline + 2");
   visit("gear.flexspline_inner_radius", "m", p.gear.flexspline_inner_radius, Range{ 1e-3, 1.0 },
         "inner radius of the undeformed flexspline, also the mean radius of the wave generator");
   visit("gear.wave_amplitude", "m", p.gear.wave_amplitude, Range{ 0.0, 1e-2 },
@@ -148,7 +148,7 @@ void visitMesh(P& p, Visitor& visit)
   visit("mesh.tangent_length", "m", p.mesh.tangent_length, Range{ 0.0, 1e-2 },
         "double arc: part of the tooth's height, about mid-height, along which the common tangent is the flank");
   visit("mesh.flank_clearance", "m", p.mesh.flank_clearance, Range{ -1e-3, 1e-3 },
-        "half the clearance at full engagement; < 0 interference");
+        "half the clearance of a tooth in its space at full engagement; < 0 interference");
   visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
         "depth of engagement over which a tooth's stiffness grows from zero to mesh.stiffness");
   visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 },
@@ -222,8 +222,8 @@ void visitStress(P& p, Visitor& visit)
   visit("stress.warping_restraint", "-", p.stress.warping_restraint, Range{ 0.0, 1.0 },
         ofOthers("restraint of the cup's warping by the flange; 0: none, 1: built in"));
   visit("stress.concentration", "-", p.stress.concentration, Range{ 1.0, 10.0 },
-        ofOthers("largest stress over nominal stress in the tooth space, at the transition from the toothed rim to the "
-                 "cup, and at the flange"));
+        ofOthers("largest over nominal stress at three places: tooth space, transition from the toothed rim to the "
+                 "cup, flange"));
   visit("stress.notch_radius", "m", p.stress.notch_radius, Range{ 1e-6, 0.1 },
         ofOthers("radii of the fillets at the places of stress.concentration"));
 }

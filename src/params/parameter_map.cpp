@@ -198,7 +198,7 @@ void checkFaults(const Parameters& p, Contradictions& check)
 
 void checkRates(const Parameters& p, Contradictions& check)
 {
-  // With a fraction of a nanosecond in a step, the times of the steps would drift from the messages' clock.
+  // If a step were not a whole number of nanoseconds, the times of the steps would drift from the messages' clock.
   const double step = std::round(NANOSECONDS_PER_SECOND / p.solver.rate);
   check.require(step * p.solver.rate == NANOSECONDS_PER_SECOND, { "solver.rate" },
                 [&]

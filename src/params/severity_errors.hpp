@@ -8,10 +8,10 @@
 
 namespace hjt
 {
-/// Error message for a severity out of range, which needs no parameters of the gear; empty if the severity is valid.
+/// Error message for a severity out of range; empty if it is valid. The check needs no parameters of the gear.
 inline std::string severityErrors(const Fault& fault, const std::string& key)
 {
-  // For NaN these comparisons are false.
+  // Both comparisons are false if the severity is NaN.
   return fault.severity >= 0.0 && fault.severity <= 1.0 ?
              "" :
              key + "severity = " + numberText(fault.severity) + " [-] of " + describe(fault.kind).name +

@@ -13,15 +13,15 @@ inline Parameters withoutWeight(Parameters parameters)
   return parameters;
 }
 
-/// Drive whose temperature is given and not computed from the losses.
+/// Drive whose temperature is the given one, not one computed from the losses.
 inline Parameters withoutHeat(Parameters parameters)
 {
   parameters.thermal.model = ThermalModel::NONE;
   return parameters;
 }
 
-/// Drive with friction coefficients of 1 at flanks and outer race. Its friction torque, multiplied by any coefficient,
-/// is that of a drive with this coefficient.
+/// Drive with friction coefficients of 1 at flanks and outer race. With a coefficient c the drive has c times this
+/// friction torque.
 inline Parameters withUnitFriction(Parameters parameters)
 {
   parameters.mesh.friction_static = 1.0;
@@ -45,7 +45,7 @@ inline Parameters withEqualTeeth(Parameters parameters)
   return parameters;
 }
 
-/// Whether all teeth and all spaces are equal: the gear has neither errors of manufacture nor configured faults.
+/// Whether all teeth and all spaces are equal, without errors of manufacture and without configured faults.
 inline bool teethAreAlike(const Parameters& parameters)
 {
   const ManufactureParameters& errors = parameters.manufacture;
@@ -56,7 +56,6 @@ inline bool teethAreAlike(const Parameters& parameters)
          is_zero(errors.circular_spline_ellipticity) && parameters.faults.empty();
 }
 
-/// Drive without errors of manufacture.
 inline Parameters withoutErrors(const Parameters& parameters)
 {
   Parameters drawn = withEqualTeeth(parameters);

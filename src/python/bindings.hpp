@@ -62,7 +62,7 @@ class InterruptCheck
 public:
   InterruptCheck() : next_(now() + PERIOD) {}
 
-  /// Checks if the last check is long enough ago. @returns whether it has checked.
+  /// Checks if the last check is at least PERIOD ago. @returns whether it has checked.
   bool operator()()
   {
     const double time = now();
@@ -80,14 +80,14 @@ public:
   }
 
 private:
-  static constexpr double PERIOD = 0.05;  // [s]
+  static constexpr double PERIOD = 0.05;  // least time between two checks [s]
 
   static double now()
   {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
 
-  double next_;  // [s]
+  double next_;  // time of the next check [s]
 };
 
 /// An InterruptCheck that also calls the progress function of a run.
@@ -125,8 +125,8 @@ private:
   InterruptCheck check_;
 };
 
-/// Calls `work` without the interpreter's lock and returns its result. If it throws `Interrupted`, Python's error is
-/// thrown.
+/// Calls `work` without the interpreter's lock and returns its result. If `work` throws `Interrupted`, throws Python's
+/// error.
 template <class Work>
 auto withoutLock(const Work& work)
 {

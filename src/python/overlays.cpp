@@ -57,7 +57,7 @@ ParameterValue parameterValue(const py::handle& value, const std::string& key)
     {
       return { py::cast<std::int64_t>(whole), ORIGIN };
     }
-    PyErr_Clear();  // the value is an array without dimensions, but not of a whole number
+    PyErr_Clear();  // the value is an array without dimensions that holds no whole number
   }
   return { numberFrom(value, key), ORIGIN };
 }

@@ -294,7 +294,7 @@ void bindInsertion(py::module& module)
              "FitCheck. Raises NotConverged.");
 }
 
-/// Parameters of the designed gear, and the rule by which each derived parameter was found.
+/// Parameters of the designed gear, and for each derived parameter the rule that gave its value.
 py::tuple design(const Configuration& parameters, double size, int ratio, const std::optional<double>& bore_radius,
                  const std::optional<double>& rim_thickness, const std::optional<double>& face_width,
                  const std::vector<double>& stiffness, const std::vector<double>& breakpoints,

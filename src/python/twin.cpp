@@ -13,7 +13,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double LARGEST_TIME = 9e9;  // limit of a stamp [s]
+constexpr double LARGEST_TIME = 9e9;  // largest magnitude of a stamp [s]
 
 /// Checks a stamp. @throws InputError if its magnitude exceeds MAX_STAMP.
 Stamp checked(Stamp stamp)

@@ -99,7 +99,7 @@ public:
 
   bool given() const { return given_; }
 
-  /// Gives the twin the value of this step if it is new. Only a motor torque can time out, so it is given at each step.
+  /// Gives the twin the value of this step if it is new. A motor torque is given at each step, so it does not time out.
   void push(Twin& twin, Stamp stamp, py::ssize_t step, py::ssize_t twin_number) const noexcept
   {
     const double* value = data_ + twin_stride_ * twin_number + step_stride_ * step;

@@ -199,8 +199,8 @@ constexpr double ARM_WARNING_PERIOD = 1.0;
 /// Time between two checks for a protective stop [s].
 constexpr double STATE_PERIOD = 0.05;
 
-/// Source of response surfaces for the drives. The function waits for those of the start, because a full ring in every
-/// drive would be too slow. Surfaces for later faults are built while the arm runs.
+/// Source of response surfaces for the drives. The function waits for the surfaces of the start, because full rings in
+/// all drives would be too slow for the clock. Surfaces for later faults are built while the arm runs.
 SurfaceSource armSurfaces(const std::vector<Parameters>& drives)
 {
   SurfaceSource source = nodeSurfaceSource(false);

@@ -133,7 +133,7 @@ std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
 {
   // largest deceleration of the fastest joint; the gentle motion has half of it [rad/s^2]
   constexpr double ACCELERATION = 4.0;
-  constexpr double SHORTEST = 0.2;  // least time until rest [s]
+  constexpr double SHORTEST = 0.2;  // least time until all joints rest [s]
   double fastest = 0.0;
   for (const JointMotion& joint : present)
   {

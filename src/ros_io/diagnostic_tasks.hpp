@@ -44,7 +44,7 @@ inline DiagnosticVerdict firstOf(const std::vector<std::pair<bool, DiagnosticVer
 
 /// Tasks of /diagnostics, each with a verdict and values. All tasks are reported every `~diagnostic_period` (default
 /// 1 s) and when a level changes. The period is in wall clock time, because a simulated clock may stop.
-/// diagnostic_updater::Updater is unsuitable: it uses the ROS clock and throws near the end of its range.
+/// diagnostic_updater::Updater is unsuitable: it uses the ROS clock and throws near the largest time of ROS.
 class DiagnosticTasks
 {
 public:

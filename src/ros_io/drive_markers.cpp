@@ -25,7 +25,7 @@ constexpr double ARROW_HEAD = 0.7e-3;   // length and width of an arrow's head [
 constexpr double MIN_ARROW = 0.2e-3;    // least length of a drawn arrow [m]
 constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at its tip, in pitches
 constexpr double ROOT_SHARE = 0.28;     // half width of a drawn tooth at its root, in pitches
-constexpr double RING_HEIGHTS = 2.0;    // height of the circular spline behind its roots, in tooth heights
+constexpr double RING_HEIGHTS = 2.0;    // radial height of the circular spline's ring outside the roots [tooth heights]
 constexpr double ROOT_CLEARANCE = 1.2;  // depth of the circular spline's spaces, in tooth heights
 constexpr int ELLIPSE_POINTS = 180;
 
@@ -47,7 +47,7 @@ const std_msgs::ColorRGBA ORANGE = color(0.95F, 0.55F, 0.10F);
 const std_msgs::ColorRGBA BLUE = color(0.20F, 0.45F, 0.90F);
 const std_msgs::ColorRGBA BLACK = color(0.05F, 0.05F, 0.05F);
 
-/// Colour for a share: that of steel at 0, `full` at 1 or more, and a mixture between.
+/// Colour for a share `of` the full value: that of steel at 0, `full` at 1 or more, and a mixture between.
 std_msgs::ColorRGBA shareColor(double of, const std_msgs::ColorRGBA& full)
 {
   const auto share = static_cast<float>(std::min(1.0, of));
@@ -139,7 +139,7 @@ DriveMarkers::DriveMarkers(const Parameters& parameters, const MarkerStyle& styl
 {
 }
 
-/// Markers of rim, teeth and forces, and the numbers for the text.
+/// Markers of rim, teeth and forces, and the numbers for the text of the marker `loads`.
 struct DriveMarkers::Teeth
 {
   Marker flexspline;

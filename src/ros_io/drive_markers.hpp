@@ -17,7 +17,7 @@ struct MarkerStyle
 {
   std::string frame;    ///< frame of the markers, whose z axis is the drive's axis
   double exaggeration;  ///< factor by which radial distances from the middle of the engaged teeth are drawn larger [-]
-  double arrow_length;  ///< length of an arrow / force that it shows [m/N]
+  double arrow_length;  ///< length of an arrow over the force that the arrow shows [m/N]
   double full_force;    ///< force from which a tooth has the full colour [N]
 };
 

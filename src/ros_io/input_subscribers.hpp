@@ -35,8 +35,8 @@ struct InputTopics
 {
   /// Twice the size of a JointState of 1000 joints [bytes].
   static constexpr std::size_t MAX_BYTES = 128 * 1024;
-  /// Number of messages in 4 s at 1 kHz. A bag that is played fast sends bursts, which a twin that is behind reads
-  /// later. None of these messages may be lost.
+  /// Number of messages in 4 s at 1 kHz. A bag that is played fast sends bursts, which a twin behind the clock reads
+  /// later. No message of a burst may be lost.
   static constexpr std::uint32_t QUEUE_SIZE = 4096;
 
   ros::NodeHandle& node;

@@ -21,7 +21,7 @@ constexpr double STOPPED_AFTER = 0.5;
 /// Largest difference of a stamp from the clock without a warning [s].
 constexpr double OFFSET_WARNING = 0.5;
 
-/// Removes the full stop at the end, because texts of diagnostics have none.
+/// Text without the full stop at its end, because texts of diagnostics end without full stop.
 std::string withoutStop(std::string sentences)
 {
   if (!sentences.empty() && sentences.back() == '.')
@@ -185,8 +185,8 @@ void JointTracker::takeLoad(const LoadAt& load)
   }
 }
 
-/// Passes a load to the tracker, after the zero of time is set. Refuses a load whose stamp is not of the rows' clock. A
-/// load without a stamp is valid from the present time of the rows' clock.
+/// Passes a load to the tracker, after the zero of time is set. Refuses a load with a stamp of another clock than the
+/// rows'. A load without a stamp is valid from the present time of the rows' clock.
 void JointTracker::passLoad(const LoadAt& load)
 {
   const Stamp stamp = load.stamp.value_or(stream_.clock.at(load.received));

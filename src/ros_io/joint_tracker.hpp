@@ -124,7 +124,7 @@ public:
   void send() { publisher_.publish(message_); }
 
 private:
-  // Messages of Comparison are published in bursts, so they need a long queue.
+  // Messages of Comparison are published in bursts and need a longer queue than other messages.
   static constexpr std::uint32_t QUEUE_SIZE =
       std::is_same_v<Message, harmonic_joint_twin::Comparison> ? InputTopics::QUEUE_SIZE : 100;
   static constexpr bool IS_LATCHED = std::is_same_v<Message, harmonic_joint_twin::Verdict>;

@@ -118,7 +118,7 @@ void LifePublisher::offer(Stamp instant, double motor_velocity, double joint_tor
   last_ = instant;
   if (elapsed < 0 || elapsed > STRETCH)
   {
-    return;  // the twin has restarted at another instant, and this is no use of the drive
+    return;  // the twin has restarted at another instant, and the time between the instants is no use of the drive
   }
   counted_.use.add({ toSeconds(elapsed), std::abs(motor_velocity), joint_torque, temperature });
   counted_.until = instant;

@@ -31,7 +31,7 @@ constexpr const char* LAUNCH = "launch";
 /// @throws ParameterError on a value that no parameter can have, for example a list with a text.
 ParameterMap readParameterServer(const std::string& parameter_namespace);
 
-/// Writes all parameters to `parameter_namespace`. A section replaces a section of its name on the server.
+/// Writes all parameters to `parameter_namespace`. A section of `map` replaces the section of equal name on the server.
 void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
 
 /// Parameters on the server that the node's own start did not set. They may be those of an earlier launch, because a

@@ -313,7 +313,7 @@ void TrackerNode::receiveTemperature(const ros::MessageEvent<const sensor_msgs::
   stream_.other_temperatures += is_of_joint ? 0 : 1;
 }
 
-/// Judges each joint apart from the common factor of all joints, as `joint_twin compare` does with a recording.
+/// Judges each joint by its friction without the common factor, as `joint_twin compare` does with a recording.
 void TrackerNode::judge(const ros::WallTime& now)
 {
   if (now < next_verdict_)
@@ -401,7 +401,7 @@ void TrackerNode::updateFit(const ArmSample& sample)
   lookAtFit();
 }
 
-/// Checks whether the telemetry up to now fits together, and tells each joint of its misfit.
+/// Checks by RecordingFit whether angles, velocities, stamps and currents fit together. Gives each joint its misfit.
 void TrackerNode::lookAtFit()
 {
   const bool settled = fit_->isSettled() && (!load_ || load_->isSettled()) && (!arm_ || arm_->isSettled());
@@ -435,7 +435,7 @@ void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
   tryOnArm([this] { arm_->add(efforts_); });
 }
 
-/// Takes the result of the ranking of arms, which follows the rule of `joint_twin compare`, also without new rows.
+/// Takes the result of the ranking of arm types, even without new rows. The ranking follows `joint_twin compare`.
 void TrackerNode::lookAtArm()
 {
   if (!arm_)

@@ -11,12 +11,12 @@ namespace hjt
 struct GrowingFault
 {
   static constexpr int STEPS = 40;  ///< number of equal steps that approximate the growth, with an error of half a step
-  static constexpr double MAX_RAMP = 1e9;  ///< [s]
+  static constexpr double MAX_RAMP = 1e9;  ///< largest duration of the growth [s]
 
   Fault fault;
   double ramp{};  ///< duration of the growth; 0: the fault has its full severity at once [s]
 
-  double severityAt(double time) const  ///< severity at `time` since the start [s]
+  double severityAt(double time) const  ///< severity at `time`, counted from the start [s]
   {
     const double gone = time - fault.onset;
     return gone < 0.0 ? 0.0 : gone < ramp ? fault.severity * gone / ramp : fault.severity;

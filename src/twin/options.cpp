@@ -15,7 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Check that a text is a number for which `holds` is true. The error is the text in quotes, followed by `wrong`.
+/// Makes a check that a text is a number for which `holds` is true. Its error is the text in quotes, then `wrong`.
 Option::Check bound(const std::function<bool(double)>& holds, const std::string& wrong)
 {
   return [=](const std::string& text)

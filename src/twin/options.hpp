@@ -14,7 +14,7 @@
 
 namespace hjt
 {
-/// Option or argument of a function, with the rules for its values and the given values. Each function adds a rule.
+/// Option or argument of a function, with rules for its values, and the given values. Each member function adds a rule.
 struct Option
 {
   enum class Kind
@@ -45,14 +45,14 @@ struct Option
 
   bool isArgument() const { return name.front() != '-'; }
 
-  std::string name;  ///< name, for an option with leading dashes
+  std::string name;  ///< name; an option has leading dashes
   std::string help;
   std::string heading;  ///< heading of the option's group in the help
   Kind kind{ Kind::FLAG };
   std::string value_type{};    ///< type of the value that the help shows
   std::string allowed{};       ///< allowed values, which the help shows after the type
   std::string default_text{};  ///< default that the help shows
-  std::size_t least{};         ///< least number of values of a given option
+  std::size_t least{};         ///< least number of values if the option is given
   std::size_t most{};          ///< largest number of values; 0: the option is a flag
   bool commas{};               ///< whether commas separate the values
   bool follows{};              ///< whether several values may follow the option's name
@@ -63,7 +63,7 @@ struct Option
 
   bool given{};
   std::vector<std::string> values{};
-  std::string shown{};  ///< name that errors about the values show; empty: `name`
+  std::string shown{};  ///< name in errors about the values; empty: `name`
 };
 
 /// Options of a function with the fields that they set. The command line, its help and the keyword arguments of Python
@@ -83,7 +83,7 @@ struct OptionTable
   /// Adds an option. The table passes each value of the option to `take`.
   Option& add(const std::string& name, Option::Kind kind, const Option::Take& take, const std::string& help);
 
-  /// Requires exactly one of these options.
+  /// Requires that exactly one of the options `names` is given.
   void oneOf(const std::vector<std::string>& names);
 
   Option* find(const std::string& name);
@@ -108,7 +108,7 @@ struct ConfigurationOptions
   std::vector<std::string> faults;       ///< KIND:SEVERITY[:PLACE[:ONSET]]: faults in addition to the configured faults
   ParameterMap values;                   ///< values that replace those of overlays and assignments
 
-  /// Whether these options leave all parameters except the faults at their defaults.
+  /// Whether no option changes a parameter of the default configuration. Faults do not count.
   bool isDefault() const { return configs.empty() && assignments.empty() && values.empty(); }
 };
 

@@ -8,7 +8,7 @@
 
 namespace hjt
 {
-/// Counter of TwinCounters with its name in records and in Python.
+/// Member of TwinCounters that counts steps, with its name in records and in Python.
 struct StepCounter
 {
   const char* name;

@@ -33,8 +33,8 @@ inline void fillToothForces(const RingEquilibrium& ring, int shift, ToothForces&
   }
 }
 
-/// Interpolates forces and positions of the teeth at the joint's present angles in a ToothResponse. @returns false if
-/// the joint does not use a surface with such a table.
+/// Interpolates forces and positions of the teeth at the joint's present angles in the surface's ToothResponse.
+/// @returns false if the joint uses no surface with a ToothResponse.
 inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexcept
 {
   const ResponseSurface* surface = joint.surface();
@@ -42,7 +42,7 @@ inline bool fillToothForces(const JointDynamics& joint, ToothForces& out) noexce
   {
     return false;
   }
-  // These arrays are in the order of ToothResponse::Quantity.
+  // The order of the arrays is that of ToothResponse::Quantity.
   const std::array<double*, ToothResponse::QUANTITIES> arrays{
     out.wave_generator_force.data(), out.rim_tension.data(), out.bending_force.data(),
     out.mesh_force.data(),           out.tooth_x.data(),     out.tooth_y.data(),

@@ -269,7 +269,7 @@ std::unique_ptr<Twin::Impl> Twin::Impl::copyOf(const Impl& other)
 
 bool Twin::Impl::reset(Stamp stamp) noexcept
 {
-  static_cast<void>(stepper.useSurface(nullptr));  // this ring need not be valid, because it is inserted anew
+  static_cast<void>(stepper.useSurface(nullptr));  // the status does not matter, because the ring is inserted anew
   scheduleConfigured(stamp);
   faults.apply(active);
   useSurface();

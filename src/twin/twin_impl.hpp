@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// Torque that inputs set at their stamps and that is constant between them. Over a step its mean acts.
+/// Torque that is constant from the stamp of an input to that of the next. In a step the mean of the torque acts.
 class HeldTorque
 {
 public:
@@ -76,15 +76,15 @@ struct Twin::Impl
   Stamp step_length;
   std::int64_t instant{};  // number of the present instant: its time over step_length
   Stamp now{};
-  // An input with an earlier stamp is late. This is the present instant or the stamp of the reset.
+  // Present instant, or the stamp of the reset. An input with an earlier stamp is late.
   Stamp simulated_until{};
   InputQueue queue;
-  std::array<Stamp, INPUT_KINDS> in_force_since{};  // for each kind the stamp of the acting input
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // for each kind of input the stamp of the one that acts
   TwinCounters counters;
-  HeldTorque motor_torque;  // commanded torque, limited to the motor's limit
+  HeldTorque motor_torque;  // commanded torque, clamped to motor.torque_limit
   bool command_clamped{};   // whether motor.torque_limit reduced the command
   bool commanded{};         // whether a command acts that has not timed out
-  HeldTorque load_torque;   // external torque, limited to output.load_torque_limit
+  HeldTorque load_torque;   // external torque, clamped to output.load_torque_limit
   bool load_clamped{};
   double arm_torque{};   // torque of a coupled arm, see Twin::coupleArm [N.m]
   double temperature{};  // received or configured temperature of the drive or its surroundings [degC]

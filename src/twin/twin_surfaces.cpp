@@ -66,7 +66,7 @@ bool grows(const FaultList& before, const FaultList& after, Fault& growing)
   return false;
 }
 
-/// Weights of the values at `places` in the value of Lagrange's polynomial at `x` [-].
+/// Weights [-] by which the values at `places` add up to the value at `x` of their Lagrange polynomial.
 std::vector<double> lagrangeWeights(const std::vector<double>& places, double x)
 {
   std::vector<double> weights(places.size(), 1.0);
@@ -137,7 +137,7 @@ void SurfaceWorker::run()
     {
       obtain(taken, faults);
     }
-    catch (const std::exception&)  // an exception of the notice, which must not leave the thread
+    catch (const std::exception&)  // the function `notice` threw; no exception may leave the thread
     {
       surface_ = nullptr;
     }
@@ -202,7 +202,7 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
     if (last - i > NODES)
     {
       interpolate(i, last, growing);
-      i = last - 1;  // another growth can begin at stage `last`
+      i = last - 1;  // the growth of another fault can begin at stage `last`
     }
     else if (few || i == 0 || i + 1 == stages_.size())
     {
@@ -222,14 +222,14 @@ void SurfaceStages::prepare(const Parameters& parameters, const FaultList& activ
   source_ = nullptr;
 }
 
-/// Lists the sets of faults in the order of time. @returns the number of tables of the gear that these sets would need.
+/// Lists the sets of active faults in the order of time. @returns the number of gear tables that all sets would need.
 int SurfaceStages::list(const FaultList& active, FaultSchedule later)
 {
   stages_.clear();
   FaultList faults = active;
   Stamp since = 0;
   int tables = 0;
-  bool is_another = true;  // whether the set needs another table of the gear
+  bool is_another = true;  // whether the set needs another table of the gear than the set before
   for (bool more = true; more;)
   {
     Fault fault;
@@ -259,8 +259,8 @@ void SurfaceStages::obtain(Stage& stage)
   }
 }
 
-/// Index of the last stage up to which a single fault grows from the stage `first` on, while all other faults stay. The
-/// result is `first` if no fault grows. `growing` receives the fault.
+/// Index of the last stage up to which a single fault grows from the stage `first` on, while all other faults stay;
+/// `first` if no fault grows. `growing` receives the growing fault.
 std::size_t SurfaceStages::endOfGrowth(std::size_t first, Fault& growing) const
 {
   std::size_t last = first;

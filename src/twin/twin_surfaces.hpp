@@ -75,7 +75,7 @@ public:
 private:
   static constexpr int MAX_TABLES = 4;     // largest number of tables of the gear for surfaces of all sets
   static constexpr std::size_t NODES = 8;  // number of intervals between tables of a growth if the teeth are equal
-  // number of these intervals if the teeth differ: fewer, because each table takes several times as long
+  // NODES if the teeth differ: fewer, because a table then takes several times as long to build
   static constexpr std::size_t FEW_NODES = 4;
 
   struct Stage

@@ -30,9 +30,9 @@ enum class FaultKind : std::uint8_t
   BEARING_OUTER_RACE,
   BEARING_BALL,
   BEARING_CAGE,
-  COUNT  ///< number of kinds
+  COUNT  ///< number of kinds of faults
 };
-constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< number of kinds
+constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< kinds of faults
 
 /// Value of Fault::place for a fault of the whole part, not of one of its teeth, segments, lobes or balls.
 constexpr int WHOLE_MEMBER = -1;
@@ -44,7 +44,7 @@ constexpr std::size_t MAX_FAULTS = 256;
 struct Fault
 {
   FaultKind kind{};
-  double severity{};          ///< size from 0 (no fault) to 1, see FaultDescription::severity [-]
+  double severity{};          ///< size of the fault from 0 (no fault) to 1, see FaultDescription::severity [-]
   int place{ WHOLE_MEMBER };  ///< number of the tooth, segment, lobe or ball, from 0; WHOLE_MEMBER: the whole part
   double onset{};             ///< delay from the start, or from the stamp of the injection, to the fault; >= 0 [s]
 
@@ -148,20 +148,20 @@ constexpr const FaultDescription& describe(FaultKind kind) noexcept
   return FAULT_DESCRIPTIONS[static_cast<std::size_t>(kind)];
 }
 
-/// Signal that shows a fault of this kind first, with orders for the bearing and teeth of this drive.
+/// Signal that shows a fault of this kind first, with the orders in the drive with these parameters.
 std::string shownFirst(FaultKind kind, const Parameters& parameters);
 std::optional<FaultKind> faultNamed(const std::string& name);  ///< kind with this name; nothing if there is none
 std::string faultNames();                                      ///< names of all kinds, for an error message
 
 /// Word for a place, for example "tooth" or "segment of the rim"; "-" for MEMBER.
 const char* placeName(FaultPlace place) noexcept;
-/// Number of places of this sort in the gear; 0 for MEMBER.
+/// Number of teeth, segments, lobes or balls in the gear that `place` counts; 0 for MEMBER.
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
-int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind allows: WHOLE_MEMBER or 0
-/// Greatest place that the kind allows in this gear.
+int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind of fault allows: WHOLE_MEMBER or 0
+/// Largest place that the kind of fault allows in the gear.
 int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
 
-/// Text of the places that a kind allows, for example "tooth 0 ... 199 or -1 (the whole member)".
+/// Text of the places that a kind of fault allows, for example "tooth 0 ... 199 or -1 (the whole member)".
 std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset of the fault are within their ranges.

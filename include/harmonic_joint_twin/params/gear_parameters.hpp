@@ -48,7 +48,7 @@ struct RingParameters
   double loss_factor{};
 };
 
-/// Direction of the wave generator's force: at the polar point of the thesis (eq. 5.11), or along the true normal.
+/// Direction of the wave generator's force: normal at the tooth's polar angle (thesis eq. 5.11), or true normal.
 enum class ContactLaw
 {
   POLAR,
@@ -100,7 +100,7 @@ struct MeshParameters
   double stribeck_velocity{};
 };
 
-/// Value of a parameter that can name a file, for no file.
+/// Value that says "no file", of a parameter that can name a file.
 constexpr const char* NO_FILE = "none";
 
 /// Pitch errors of the flexspline or the circular spline, from a random sequence with a seed or from a table.

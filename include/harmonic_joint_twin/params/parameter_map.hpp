@@ -22,7 +22,7 @@ struct ParameterValue
 /// Map from `section.key` to value, the common form for YAML files, `--set` and the ROS parameter server.
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Top-level key of the list of faults. Keys in the map are `faults.N.kind`, `faults.N.severity` ..., with N from 0.
+/// Top-level key of the list of faults. A ParameterMap has `faults.N.kind`, `faults.N.severity` ..., with N from 0.
 constexpr const char* FAULTS = "faults";
 std::string faultKey(int number);     ///< key of fault N: `faults.N`
 void eraseFaults(ParameterMap& map);  ///< removes all faults, because a new list of faults replaces the old list
@@ -41,20 +41,20 @@ void readDefaultConfiguration(const std::string& directory, ParameterMap& map);
 /// `key` and `origin`. @throws ParameterError.
 ParameterValue parseScalar(const std::string& text, bool quoted, const std::string& key, const std::string& origin);
 
-/// Number in `value`, which may be a text as 1e-3 on the parameter server. Nothing if it is no number.
+/// Number in `value`; nothing if `value` is no number. A text like 1e-3, as the parameter server holds it, is a number.
 std::optional<double> numberOf(const decltype(ParameterValue::value)& value);
 
-/// Text of the value in error messages.
+/// Text of a parameter's value for error messages.
 std::string valueText(const ParameterValue& value);
 
-/// Reads a `section.key=value` with a value in YAML into `map`. @throws ParameterError.
+/// Reads the text `section.key=value`, whose value is YAML, into `map`. @throws ParameterError.
 void readAssignment(const std::string& assignment, ParameterMap& map);
 
 /// Converts a complete map to checked parameters.
 /// @throws ParameterError if a key is missing, unknown, mistyped or out of range, or if two keys contradict each other.
 Parameters parseParameters(const ParameterMap& map);
 
-/// Changes the parameters that the map names, adds its faults, and checks all parameters. @throws ParameterError.
+/// Applies the values of `changes`, adds the faults of `changes`, checks all parameters. @throws ParameterError.
 void changeParameters(Parameters& parameters, const ParameterMap& changes);
 
 /// Hash of all values (FNV-1a, 64 bits).

@@ -56,7 +56,7 @@ struct BrakeParameters
   bool engaged_at_start{};
 };
 
-/// Whether the losses of the drive warm the drive.
+/// Whether the twin computes how the losses warm the drive.
 enum class ThermalModel
 {
   NONE,      ///< no: the drive has the configured or received temperature
@@ -191,7 +191,7 @@ struct LifeParameters
   double forecast_period{};
 };
 
-/// Allowed range of the drive's temperature [degC].
+/// Least and largest allowed temperature of the drive [degC].
 constexpr double MIN_TEMPERATURE = -40.0;
 constexpr double MAX_TEMPERATURE = 150.0;
 
@@ -260,7 +260,7 @@ struct ObserverParameters
   double disturbance_growth{};
 };
 
-/// Tolerances for a sound joint: of its differences from the twin, and of its differences between recordings.
+/// Tolerances for the differences of a sound joint from its twin, and from one recording of the joint to the next.
 struct ComparisonParameters
 {
   double friction_tolerance{};

@@ -34,8 +34,8 @@ public:
   bool push(const Fault& fault, Stamp stamp) noexcept;
   /// Whether any fault has a stamp that is not after `instant`.
   bool isDue(Stamp instant) const noexcept { return size_ > 0 && waiting_[size_ - 1].stamp <= instant; }
-  /// Takes the earliest fault that is due. Drops a fault if a fault of its kind and place with a later stamp was taken
-  /// before. @returns false if no fault is due.
+  /// Takes the earliest fault that is due. Drops a due fault if one of the same kind and place with a later stamp was
+  /// taken before. @returns false if no fault is due.
   bool pop(Stamp instant, Fault& fault, Stamp& stamp) noexcept;
 
 private:

@@ -53,10 +53,10 @@ inline Stamp stampOf(const TwinInput& input) noexcept
 /// Numbers of inputs since the queue was cleared.
 struct InputCounters
 {
-  std::uint64_t accepted{};    ///< inputs that were queued, with the late inputs
+  std::uint64_t accepted{};    ///< inputs that were queued, including late ones
   std::uint64_t not_finite{};  ///< inputs that were refused because they are NaN or infinite
   std::uint64_t late{};        ///< inputs with a stamp before the simulated instant, which act at once
-  std::uint64_t overflow{};    ///< inputs that were dropped because the queue was full; it drops the oldest input
+  std::uint64_t overflow{};    ///< inputs that were dropped: a full queue drops its oldest input
 };
 
 /// Inputs, ordered by time. Inputs with equal stamps stay in the order of their arrival. The storage has a fixed size.

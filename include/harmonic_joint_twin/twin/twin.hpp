@@ -28,7 +28,7 @@ struct JointOutputs
   double motor_velocity{};       ///< true speed of the wave generator
   double output_angle{};         ///< true angle of the circular spline
   double output_velocity{};      ///< true speed of the circular spline
-  double motor_torque{};         ///< torque of the motor after timeout of the command, limits and lag
+  double motor_torque{};         ///< torque of the motor after timeout, limits and lag of the current loop
   double load_torque{};          ///< external torque at the output, > 0 resists positive motion
   double temperature{};          ///< temperature of the grease, which determines the friction [degC]
   double housing_temperature{};  ///< temperature of the housing [degC]
@@ -165,9 +165,9 @@ public:
 
   ToothForces makeToothForces() const;  ///< arrays of the right size for toothForces; allocates
   /// Computes the tooth forces at the current instant. On the response surface they come from a table of tooth forces
-  /// or, without such a table, from a separate full ring. @returns false and changes nothing if it has no equilibrium.
+  /// or, without such a table, from a separate full ring. @returns false if this ring has no equilibrium.
   bool toothForces(ToothForces& forces) noexcept;
-  /// Computes the stresses of the flexspline like toothForces. `stress`: must have the size of the number of teeth.
+  /// Computes the stresses of the flexspline like toothForces. `stress` must have one entry for each tooth.
   bool toothStress(ToothStress& stress) noexcept;
   /// Health at the current instant. HealthReport::solver_state covers the steps after `since` [ns], or all steps since
   /// the last reset if `since` is not before the current instant.
@@ -180,7 +180,7 @@ public:
   /// recording. This is not for a control loop, because each window stores all its samples, and steps allocate.
   void seekBearingSlip();
   const SignalIndicators& signalIndicators() const noexcept;  ///< indicators of the last window
-  /// Assessment of the last window. After an alarm the twin searches for the cause and is ready 50 ms after the window.
+  /// Assessment of the last window. After an alarm the twin searches for the cause until 50 ms after the window.
   const Assessment& assessment() const noexcept;
 
 private:

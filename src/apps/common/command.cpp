@@ -96,7 +96,7 @@ void printUsage(std::ostream& text, const CommandNode& command)
   text << (command.subcommands.empty() ? "\n" : " SUBCOMMAND\n");
 }
 
-/// Prints the arguments, then the groups of options, ordered by the first option of each group.
+/// Prints the help on arguments, then on groups of options, ordered by the first option of each group.
 void printOptions(std::ostream& text, const CommandNode& command)
 {
   std::vector<std::string> groups;
@@ -220,8 +220,8 @@ const po::value_semantic* valuesOf(const Option& option)
   return new Values(option.commas || option.follows ? option.most : 1);
 }
 
-/// Splits the words of a command line into options with values. Boost does it. An abbreviated name is an error, and a
-/// negative number is a value.
+/// Splits the words of a command line by Boost into options with values. An abbreviated name of an option is an error,
+/// and a negative number is a value.
 std::vector<po::option> split(CommandNode& command, const Words& words)
 {
   po::options_description known;
@@ -258,7 +258,7 @@ std::vector<po::option> split(CommandNode& command, const Words& words)
   }
 }
 
-/// Passes to each option its values. @returns the words that belong to no option.
+/// Gives each option of the command its values from `words`. @returns the words that belong to no option.
 Words distribute(CommandNode& command, Words words)
 {
   std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-h"), std::string("--help"));

@@ -70,7 +70,7 @@ public:
   /// Whether the command line names a subcommand of this program, or only prints the version.
   static bool knows(int argc, char** argv);
 
-  /// Parses the command line. If this prints help, version or an error, the process ends. @returns the exit code then.
+  /// Parses the command line. @returns the exit code if only help, the version or an error was printed; else nothing.
   std::optional<int> parse(int argc, char** argv);
 
   int run() const { return run_(); }

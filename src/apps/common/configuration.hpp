@@ -21,7 +21,7 @@ struct CommonOptions : ConfigurationOptions
 void addJsonOption(OptionTable& table, bool& json);
 void addCommonOptions(OptionTable& table, CommonOptions& options);
 
-/// Prints a warning on stderr for each value of the gear that is inconsistent with its other values.
+/// Prints a warning on stderr for each parameter of the gear that is inconsistent with other parameters of the gear.
 void printGearWarnings(const Parameters& parameters);
 
 /// Loads the parameters and prints the warnings of `printGearWarnings`. @throws ParameterError.

@@ -11,7 +11,7 @@ namespace hjt
 template <class Options>
 struct Printed : Options
 {
-  bool json{};  ///< print the result as one JSON document
+  bool json{};  ///< whether to print the result as one JSON document
 };
 
 /// Adds the options of the library function, and `--json`.

@@ -194,10 +194,10 @@ void printJoints(const CheckedArm& arm)
 struct OpenJoints
 {
   std::vector<std::string> names;
-  std::string text;  ///< text of the reason; without the numbers of the joints if these differ
+  std::string text;  ///< text of the reason; without numbers if the joints have different ones
 };
 
-/// Prints which joints will have a verdict, and the reasons for the others; `--json` has the numbers of all.
+/// Prints which joints will have a verdict, and why the other joints will have none.
 void printJudged(const CheckedArm& arm)
 {
   std::vector<std::string> judged;

@@ -41,15 +41,15 @@ struct ExportOptions : CommonOptions
 struct ExportedJoint
 {
   std::string name;             ///< name in XML
-  double friction{};            ///< dry part of the straight line through the friction over the speed [N.m]
-  double damping{};             ///< slope of the straight line through the friction over the speed [N.m.s/rad]
+  double friction{};            ///< value at speed 0 of the straight line fitted to friction over speed [N.m]
+  double damping{};             ///< slope of the straight line fitted to friction over speed [N.m.s/rad]
   double friction_deviation{};  ///< largest deviation of the twin's friction from the straight line [N.m]
   double armature{};            ///< inertia of motor and wave generator at the joint [kg.m^2]
   double stiffness{};           ///< stiffness of the gear: secant between plus and minus the rated torque [N.m/rad]
   double hysteresis{};          ///< dry friction parallel to the stiffness: half the height of the torsion loop [N.m]
   double inertia{};             ///< inertia of circular spline and load [kg.m^2]
-  double effort{};              ///< largest torque [N.m]
-  double velocity{};            ///< largest speed [rad/s]
+  double effort{};              ///< largest torque of the joint [N.m]
+  double velocity{};            ///< largest speed of the joint [rad/s]
 };
 
 /// Fits a straight line to the twin's friction without load over the speed of the joint.
@@ -141,15 +141,15 @@ std::string mjcfInertial(double inertia)
   return "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"" + text + ' ' + text + ' ' + text + "\"/>\n";
 }
 
-/// Attributes of dry friction. In MuJoCo a joint that friction holds creeps: with the largest impedance that MuJoCo
-/// allows, by microradians per second.
+/// Attributes of dry friction, with the largest impedance that MuJoCo allows. Even so, a joint that friction holds
+/// creeps in MuJoCo by microradians per second.
 std::string mjcfFriction(double friction)
 {
   return attribute("frictionloss", friction) + " solimpfriction=\"0.9999 0.9999 0.001 0.5 2\"";
 }
 
-/// Time step: MuJoCo's default or, if shorter, 4 % of the period in which motor and output oscillate against each other
-/// on the spring. A third of this period is the limit of stability.
+/// Time step for MuJoCo [s]: its default or, if shorter, 4 % of the period in which motor and output oscillate against
+/// each other on the gear's spring. A step of a third of this period is the limit of stability.
 double mjcfTimeStep(const ExportedJoint& joint)
 {
   constexpr double OWN = 0.002;
@@ -173,7 +173,7 @@ std::string mjcf(const ExportedJoint& joint, const Parameters& parameters)
          "\"/>\n  </actuator>\n</mujoco>\n";
 }
 
-/// Paths of the loaded libraries whose names are in `names`. Another system may lack them. Empty if these libraries are
+/// Paths of the loaded libraries whose names are in `names`, which another system may lack. Empty if all of them are
 /// linked statically.
 std::vector<std::string> loadedLibraries(const std::vector<std::string>& names)
 {

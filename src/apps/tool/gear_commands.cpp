@@ -26,7 +26,7 @@ namespace hjt
 namespace
 {
 constexpr double ARCMIN = PI / 180.0 / 60.0;
-constexpr int DIGITS = 6;  // significant digits of a written value
+constexpr int DIGITS = 6;  // significant digits of a value in the overlay
 
 struct GearOptions : CommonOptions
 {

@@ -43,8 +43,8 @@ struct ImportOptions : CommonOptions
   std::string joint_namespace{ DEFAULT_NAMESPACE };
 };
 
-/// Columns of a UR controller's real-time interface that follow the timestamp. There is one of each for each joint. The
-/// temperature may be missing.
+/// Columns of a UR controller's real-time interface that follow the timestamp. Each joint has
+/// a column of each quantity. The temperature may be missing.
 constexpr std::array<const char*, 5> QUANTITIES{ "actual_q", "actual_qd", "actual_current", "target_moment",
                                                  "joint_temperatures" };
 enum Quantity
@@ -149,7 +149,7 @@ private:
   double torque_per_current_;
   Stamp start_;
   std::string prefix_;
-  Stamp next_temperatures_{};  // [ns]
+  Stamp next_temperatures_{};  // stamp of the next temperatures [ns]
   sensor_msgs::Temperature temperature_;
   sensor_msgs::JointState telemetry_;
   sensor_msgs::JointState command_;
@@ -162,7 +162,7 @@ double countLines(const std::string& path)
   return static_cast<double>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
-/// Writes all rows to the bag. @returns the number of rows. After an error the bag is readable and has the rows before.
+/// Writes all rows to the bag. @returns the number of rows. After an error the bag has all rows before it.
 std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
                          NumberTable<ROW_COLUMNS>& table, BagWriter& bag)
 {

@@ -104,7 +104,7 @@ struct FatigueRow
   double torque{};
   std::size_t place{};
   StressCycle cycle;
-  double equivalent{};   ///< stress amplitude at the notch with zero mean that does as much damage [Pa]
+  double equivalent{};   ///< amplitude with zero mean stress that damages the notch as `cycle` does [Pa]
   double cycles{};       ///< number of cycles that half of all flexsplines endure; infinite below the endurance limit
   double cycles_weak{};  ///< number of cycles that 99 % of all flexsplines endure
   double allowed{};      ///< number of cycles that the catalogue allows; infinite up to the repeated peak torque

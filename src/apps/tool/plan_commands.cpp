@@ -69,7 +69,7 @@ std::set<std::string> surfacesOf(const Parameters& parameters)
   return asked->keys;
 }
 
-/// Counts the surfaces that runs need and the cache lacks. It counts a surface only for the first run that needs it.
+/// Counts the surfaces that runs need and the cache lacks. A surface counts once, for the first run that needs it.
 class MissingSurfaces
 {
 public:
@@ -78,11 +78,11 @@ public:
   struct OfBlock
   {
     double count{};
-    std::uint64_t first_run;     ///< first run that needs a surface; if no run does, the first run of the block
-    std::size_t of_first_run{};  ///< number of surfaces that `first_run` needs
+    std::uint64_t first_run;     ///< first run with a missing surface; without one, the first run of the block
+    std::size_t of_first_run{};  ///< number of missing surfaces of `first_run`
   };
 
-  /// Checks runs for a few seconds. The other runs of the block are assumed to need equally many surfaces on average.
+  /// Counts for the block. Checks runs for PATIENCE and assumes that the other runs need as many surfaces on average.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;
@@ -134,7 +134,7 @@ std::string shortTime(double seconds)
 {
   constexpr double MINUTE = 60.0;
   constexpr double HOUR = 3600.0;
-  constexpr double MANY = 100.0;  // larger values are printed in the next larger unit
+  constexpr double MANY = 100.0;  // a number above this is printed in the next larger unit
   return seconds < MANY          ? rounded(seconds) + " s" :
          seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
                                    rounded(seconds / HOUR) + " h";

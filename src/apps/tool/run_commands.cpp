@@ -116,7 +116,7 @@ public:
   }
 
 private:
-  std::vector<Input> inputs_;  ///< inputs; their stamps count from t = 0
+  std::vector<Input> inputs_;  ///< inputs; their stamps count from t = 0 [ns]
   std::size_t next_{};
   bool has_load_{};
   double motor_torque_{};
@@ -199,7 +199,7 @@ public:
   std::uint64_t rows() const { return rows_; }
 
 private:
-  Stamp period_;  // [ns]
+  Stamp period_;  // time between two rows [ns]
   Stamp begin_;
   std::uint64_t rows_{};
   CsvWriter csv_;
@@ -283,7 +283,7 @@ void declare(OptionTable& table, SimulateOptions& options)
 
 const Subcommand SIMULATE{ Subject::JOINT, "simulate", "run the twin under a given motor torque", declare, simulate };
 
-/// Longest recording [s]. In a longer recording a time is damaged, and the twin would simulate years.
+/// Longest accepted recording [s]. A longer one has a damaged time, and the twin would simulate years.
 constexpr double MAX_RECORDING = 1e6;
 
 struct ReplayOptions : CommonOptions
@@ -294,7 +294,7 @@ struct ReplayOptions : CommonOptions
   bool without_command{};
 };
 
-/// Configuration of a replay: by default with the response surface. Its error is below the resolution of the published
+/// Configuration of a replay: by default with the response surface, whose error is below the resolution of published
 /// sensor values. A file or --set may select the full ring. Each Health message says which of the two was used.
 ParameterMap replayedMap(const ReplayOptions& options)
 {
@@ -328,7 +328,7 @@ bool jointIsChosen(const ReplayOptions& options, const ParameterMap& map)
                    listTopics(bag));
 }
 
-/// Whether the bag contains what is replayed: a motor torque or, with --without-command, any input.
+/// Whether the bag can be replayed: it contains a motor torque or, with --without-command, any input of the twin.
 bool suffices(const BagInputs& found, const ReplayOptions& options)
 {
   return std::any_of(found.inputs.begin(), found.inputs.end(),
@@ -339,7 +339,7 @@ bool suffices(const BagInputs& found, const ReplayOptions& options)
                      });
 }
 
-/// @throws InputError if the recording is longer than MAX_RECORDING.
+/// Checks the length of the recording. @throws InputError if it exceeds MAX_RECORDING.
 void checkSpan(const rosbag::Bag& bag, const std::string& path)
 {
   rosbag::View view(bag);

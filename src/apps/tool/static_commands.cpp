@@ -33,7 +33,7 @@ const std::vector<ToothColumn> RING_COLUMNS{ { "tooth_x", &ToothTable::tooth_x }
                                              { "stress_tooth_space", &ToothTable::stress_tooth_space },
                                              { "stress_transition", &ToothTable::stress_transition },
                                              { "stress_flange", &ToothTable::stress_flange } };
-/// Quantities of a tooth that exist only with a circular spline.
+/// Quantities of a tooth that exist only in an equilibrium with circular spline.
 const std::vector<ToothColumn> SPACE_COLUMNS{ { "across", &ToothTable::across },
                                               { "depth", &ToothTable::depth },
                                               { "tilt", &ToothTable::tilt },
@@ -159,7 +159,7 @@ void writeTeeth(const std::string& path, const std::vector<StiffnessRow>& rows)
   csv.close();
 }
 
-/// For each of the three places of the flexspline: nominal stresses, and stresses at the notch.
+/// Stresses at each StressPlace of the flexspline: nominal, and at the notch.
 Json stressJson(const Parameters& parameters, const StiffnessRow& row)
 {
   const FatigueLaw fatigue_law(parameters.life, parameters.stress);
