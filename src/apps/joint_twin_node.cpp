@@ -262,7 +262,7 @@ std::vector<hjt::SoundJoint> soundJointsOf(const std::string& list, const hjt::A
     joints.push_back(hjt::readSoundJoint(directories, parameters[i]));
     if (joints.back().own.is_unjudged)
     {
-      ROS_WARN_STREAM("The reference does not judge the friction of "
+      ROS_WARN_STREAM("The reference has no verdict on the friction of "
                       << arm.joints[i].short_name << ". The expected friction of this joint is that of the twin");
     }
   }

@@ -31,7 +31,7 @@ void visitArm(Arm& arm, Fields& fields)
     fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed of the joint; 0: no limit");
     fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY,
            "largest torque of the feedback at the joint; 0: no limit");
-    fields(place + "delay", "s", joint.delay, ANY, "delay of the joint's set points");
+    fields(place + "delay", "s", joint.delay, ANY, "time from the joint's set point until its controller acts on it");
     fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed of the joint / error of its angle");
     fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque at the joint / error of its speed");
     fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed controller");
@@ -44,12 +44,12 @@ void visitArm(Arm& arm, Fields& fields)
     const std::string place = "links." + std::to_string(i) + '.';
     auto& link = arm.links[i];
     fields(place + "motion", "-", link.motion, "kind of motion of the joint");
-    fields(place + "axis", "-", link.axis, ANY, "axis of the joint in the frame of the link before");
-    fields(place + "origin", "m", link.origin, ANY, "point of the joint's axis in the frame of the link before");
+    fields(place + "axis", "-", link.axis, ANY, "axis of the joint in the frame of the link before the joint");
+    fields(place + "origin", "m", link.origin, ANY, "point on this axis in the frame of the link before the joint");
     fields(place + "position", "m", link.position, ANY,
-           "origin of the link's frame in the frame of the link before, at a joint angle of 0");
+           "origin of the link's frame in the frame of the link before the joint, at a joint angle of 0");
     fields(place + "rotation", "-", link.rotation, ANY,
-           "rotation matrix of the link's frame in the frame of the link before, row by row");
+           "rotation matrix of the link's frame in the frame of the link before the joint, row by row");
     fields(place + "mass", "kg", link.mass, ANY, "mass of the link");
     fields(place + "centre", "m", link.centre, ANY, "centre of mass in the link's frame");
     fields(place + "inertia", "kg.m^2", link.inertia, ANY, "inertia of the link about its centre of mass");

@@ -232,7 +232,7 @@ std::vector<ScalarOutput> healthOutputs()
   using O = const JointOutputs&;
   using S = ScalarIndicator;
   constexpr Type F = Type::FLOAT64;
-  constexpr const char* LAST_WINDOW = "value of the last window that determines the indicator; 0: no such window yet";
+  constexpr const char* LAST_WINDOW = "value in the last window that gave a value of the indicator; 0: none yet";
   return {
     { "transmission_ratio", "-",
       "change of the motor angle / change of the output angle, over the last motor turn; 0: no value yet", F,

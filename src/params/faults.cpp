@@ -115,7 +115,7 @@ std::string shownFirst(FaultKind kind, const Parameters& parameters)
 std::string placeText(FaultKind kind, const Parameters& parameters)
 {
   const int last = lastPlace(kind, parameters);
-  const std::string whole = "-1 (the whole member)";
+  const std::string whole = "-1 (the whole part)";
   if (last < 0)
   {
     return whole;

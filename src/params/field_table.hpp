@@ -238,9 +238,9 @@ void visitLife(P& p, Visitor& visit)
   visit("life.wear_spread", "-", p.life.wear_spread, Range{ 0.0, 3.0 },
         ofOthers("standard deviation, from drive to drive, of the logarithm of both wear coefficients"));
   visit("life.flank_wear_limit", "m", p.life.flank_wear_limit, Range{ 1e-7, 1e-3 },
-        ofOthers("wear depth of both flanks of a pair at the end of the drive's life"));
+        ofOthers("wear depth of both flanks of a tooth pair at which the drive's life ends"));
   visit("life.interface_wear_limit", "m", p.life.interface_wear_limit, Range{ 1e-7, 1e-3 },
-        ofOthers("wear depth of race and rim at the end of the drive's life"));
+        ofOthers("wear depth of outer race and rim at which the drive's life ends"));
   visit("life.grease_turns", "-", p.life.grease_turns, Range{ 1.0, 1e15 },
         ofOthers("number of turns of the motor between two changes of grease at grease_temperature"));
   visit("life.grease_temperature", "degC", p.life.grease_temperature, Range{ -40.0, 150.0 },

@@ -129,7 +129,7 @@ void visitContact(P& p, Visitor& visit)
         "direction of the contact force; normal: true normal of the ellipse; polar: normal at the polar angle of the "
         "tooth (an approximation of the thesis)");
   visit("contact.smoothing", "m", p.contact.smoothing, Range{ 0.0, 1e-4 },
-        "depth over which the contact force sets in smoothly (C1), with contact.support = springs; 0 = exact law");
+        "depth over which the contact force sets in smoothly (C1), with contact.support = springs; 0 = no smoothing");
   visit("contact.friction_coefficient", "-", p.contact.friction_coefficient, Range{ 0.0, 2.0 },
         "coefficient of friction between the bearing's outer race and the flexspline");
   visit("contact.slip_lever", "m", p.contact.slip_lever, Range{ 0.0, 1e-1 },
@@ -152,7 +152,7 @@ void visitMesh(P& p, Visitor& visit)
   visit("mesh.engagement_depth", "m", p.mesh.engagement_depth, Range{ 1e-9, 1e-2 },
         "depth of engagement over which a tooth's stiffness grows from zero to mesh.stiffness");
   visit("mesh.smoothing", "m", p.mesh.smoothing, Range{ 0.0, 1e-4 },
-        "depth over which the contact force sets in smoothly (C1); 0 = exact law");
+        "depth over which the contact force sets in smoothly (C1); 0 = no smoothing");
   visit("mesh.friction_static", "-", p.mesh.friction_static, Range{ 0.0, 2.0 },
         "coefficient of flank friction at rest");
   visit("mesh.friction_kinetic", "-", p.mesh.friction_kinetic, Range{ 0.0, 2.0 },
@@ -268,7 +268,7 @@ void visitFaultScale(P& p, Visitor& visit)
   visit("fault_scale.rim_crack_depth", "-", scale.rim_crack_depth, Range{ 0.0, 0.99 },
         ofFaults("crack of the rim at severity 1: depth of the crack over the thickness of the rim"));
   visit("fault_scale.rim_crack_segments", "-", scale.rim_crack_segments, Range{ 1, 100 },
-        ofFaults("flexspline_crack: number of segments on each side over which the crack's depth decreases to zero"));
+        ofFaults("flexspline_crack: number of segments on each side of the crack over which its depth falls to zero"));
   visit("fault_scale.buckling_stiffness_loss", "-", scale.buckling_stiffness_loss, Range{ 0.0, 0.99 },
         ofFaults("buckling at severity 1: relative reduction of the stiffness of the cup's wall"));
   visit("fault_scale.buckling_out_of_round", "m", scale.buckling_out_of_round, depth,

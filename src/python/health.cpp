@@ -150,7 +150,7 @@ void bindIndicators(py::module& module)
           "coefficient of the load torque for the cosine of the output angle; nan: unknown [N.m]")
       .def_property_readonly(
           "inertia", [](const SignalIndicators& self) { return self.point.inertia; },
-          "inertia at the joint with that of the drive: motor torque / acceleration [kg.m^2]")
+          "inertia at the joint, including that of the drive: motor torque / acceleration [kg.m^2]")
       .def_property_readonly(
           "temperature", [](const SignalIndicators& self) { return self.point.temperature; },
           "mean temperature; nan: not measured [degC]")

@@ -155,13 +155,13 @@ void bindFaults(py::module& module)
       .def(py::init(&makeFault), py::arg("kind"), py::arg("severity"), py::arg("place") = py::none(),
            py::arg("onset") = 0.0,
            "kind: see fault_kinds(); severity: 0 (none) ... 1 [-]; place: number of tooth, segment, lobe or ball from "
-           "0 on, -1: the whole member, None: the first place that the kind allows; onset: delay after the start, or "
+           "0 on, -1: the whole part, None: the first place that the kind allows; onset: delay after the start, or "
            "after the stamp of its injection [s].")
       .def_property_readonly(
           "kind", [](const Fault& self) { return describe(self.kind).name; }, "name of the kind")
       .def_readonly("severity", &Fault::severity, "size of the fault, 0 (none) ... 1 [-]")
       .def_readonly("place", &Fault::place,
-                    "number of the tooth, segment, lobe or ball from 0 on; -1: the whole member [-]")
+                    "number of the tooth, segment, lobe or ball from 0 on; -1: the whole part [-]")
       .def_readonly("onset", &Fault::onset, "delay of the fault after the start, or after the stamp of injection [s]")
       .def(
           "__eq__", [](const Fault& self, const Fault& other) { return partsOf(self).equal(partsOf(other)); },
@@ -177,7 +177,7 @@ void bindFaults(py::module& module)
       .def_property_readonly(
           "place", [](const FaultDescription& self) { return placeName(self.place); },
           "kind of the place: tooth, segment, lobe, ball, or - without places")
-      .def_readonly("whole", &FaultDescription::whole, "whether place -1, the whole member, is allowed")
+      .def_readonly("whole", &FaultDescription::whole, "whether place -1, the whole part, is allowed")
       .def_property_readonly(
           "severity", [](const FaultDescription& self) { return self.severity; }, "size of the fault at severity 1")
       .def(

@@ -290,8 +290,8 @@ void bindInsertion(py::module& module)
                              "whether the teeth load the wave generator more than the bent rim does");
   addText(check);
   module.def("check_fit", &fit, py::arg("parameters"),
-             "Checks whether the teeth fit into each other without load. Use it after each change of a gear. Returns "
-             "FitCheck. Raises NotConverged.");
+             "Checks whether the teeth fit into each other without load. Use this check after each change of a gear. "
+             "Returns FitCheck. Raises NotConverged.");
 }
 
 /// Parameters of the designed gear, and for each derived parameter the rule that gave its value.
@@ -388,7 +388,7 @@ void bindSlowMotion(py::module& module)
   module.def(
       "analyse_losses", &losses, py::arg("parameters"), py::arg("speeds"), py::arg("loads"), py::arg("positions") = 16,
       "Computes friction and efficiency at constant motor speeds [rad/s] and loads [N.m]; positions: number of wave "
-      "generator angles per tooth pitch, over which quantities are averaged.\n\n"
+      "generator angles per tooth pitch, over which torques are averaged.\n\n"
       "Returns a structured array of shape (loads, speeds): motor_speed [rad/s], load_torque, load_reduced [N.m]; "
       "bearing, interface, flexing, mesh, cup, damping, output, motor, gear_loss: torques at the motor shaft "
       "[N.m]; gear_efficiency [-]. Raises NotConverged.");

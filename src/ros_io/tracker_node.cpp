@@ -517,10 +517,10 @@ void TrackerNode::lookAtLoad()
   {
     ROS_INFO_STREAM(
         (load_->isTrying() ?
-             "The twin tries a load that differs from the configured one; no WARN is given until the test is finished" :
+             "The twin tests a load that differs from the configured one; no WARN is given during the test" :
          !std::isinf(assumed.since) ? "The payload has changed; the joints are judged from the change on" :
          assumed.isConfigured()     ? "The twin uses the configured load again" :
-                                      "The twin uses the earlier load again"));
+                                      "The twin again uses the load from before the test"));
     arm_load_.emplace(load_->arm());
     resetFit();
     for (const auto& joint : joints_)

@@ -161,7 +161,7 @@ int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind of faul
 /// Largest place that the kind of fault allows in the gear.
 int lastPlace(FaultKind kind, const Parameters& parameters) noexcept;
 
-/// Text of the places that a kind of fault allows, for example "tooth 0 ... 199 or -1 (the whole member)".
+/// Text of the places that a kind of fault allows, for example "tooth 0 ... 199 or -1 (the whole part)".
 std::string placeText(FaultKind kind, const Parameters& parameters);
 
 /// Whether severity, place and onset of the fault are within their ranges.

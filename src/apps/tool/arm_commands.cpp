@@ -46,7 +46,7 @@ int checkup(const Printed<CheckUpOptions>& options)
 }
 
 const Subcommand CHECKUP{ Subject::JOINT, "checkup",
-                          "make the motion of an arm that shows faults best, within its limits of speed and torque",
+                          "make the motion of an arm that shows faults best, within the limits of speed and torque",
                           declarePrinted<CheckUpOptions>, checkup };
 }  // namespace
 }  // namespace hjt

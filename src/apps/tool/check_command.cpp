@@ -133,7 +133,7 @@ std::string textOfVelocities(const CheckedArm& arm)
   {
     const bool fit = std::none_of(arm.findings.begin(), arm.findings.end(),
                                   [](const RecordingFinding& finding) { return finding.kind == "stamps"; });
-    return (fit ? "fit: " : "do not fit: ") + std::string("by the stamps the angles change ") +
+    return (fit ? "fit: " : "do not fit: ") + std::string("according to the stamps the angles change ") +
            roundedText(arm.stamps.value, 4) + " times as fast as the velocities say";
   }
   const bool has =
@@ -263,7 +263,7 @@ void printArm(const RecordingCheck& check, const CheckedArm& arm)
     printLine("tried", remedy.options.substr(1) + ": the load leaves " + percentText(remedy.after) +
                            " of the currents unexplained" +
                            (std::isfinite(remedy.before) ? " instead of " + percentText(remedy.before) : "") +
-                           (remedy.helps ? "" : "; this is not the cause"));
+                           (remedy.helps ? "" : "; the tried options do not help"));
   }
   std::cout << std::flush;
   if (!arm.joints.empty())
@@ -300,7 +300,7 @@ int check(const Printed<RecordingOptions>& given)
 }
 
 const Subcommand CHECK{ Subject::RECORDING, "check",
-                        "show which signals of an arm's recording are usable, what does not fit, and the next command",
+                        "show usable and contradictory signals of an arm's recording, and the next command",
                         declarePrinted<RecordingOptions>, check };
 }  // namespace
 }  // namespace hjt

@@ -102,7 +102,7 @@ int faults(const CommonOptions& options)
 }
 
 const Subcommand LIST_OF_FAULTS{ Subject::JOINT, "faults",
-                                 "list the kinds of faults: size of severity 1, places, symptoms", addCommonOptions,
+                                 "list the kinds of faults: size at severity 1, places, symptoms", addCommonOptions,
                                  faults };
 }  // namespace
 }  // namespace hjt

@@ -193,7 +193,7 @@ void declareFatigue(OptionTable& table, FatigueOptions& options)
 }
 
 const Subcommand FATIGUE{ Subject::STUDY, "life fatigue",
-                          "stress of the flexspline over a turn, and the cycles that it endures", declareFatigue,
+                          "stress of the flexspline over a turn, and its number of cycles to failure", declareFatigue,
                           fatigue };
 
 int age(const AgeOptions& options)
@@ -224,7 +224,7 @@ int age(const AgeOptions& options)
     { "flaw_depth", "crack at the tooth root", life.age.flaw_depth, "m" },
     { "fatigue", "fatigue of the flexspline (1: broken)",
       *std::max_element(life.age.fatigue.begin(), life.age.fatigue.end()) },
-    { "", "share of bearings that fail by then", bearing.failedBy(life.age.bearing_turns) },
+    { "", "share of bearings that fail within these hours", bearing.failedBy(life.age.bearing_turns) },
     { "phases", "", Table(PHASE_COLUMNS, phases).rows() },
   };
   if (options.check)
@@ -310,8 +310,8 @@ int trials(const TrialsOptions& options)
                 { "forecasts", "forecasts", all.forecasts },
                 { "coverage_80", "", all.share() },
                 { "coverage_80_from_half_life", "", later.share() },
-                { "", "interval of 80 % holds the truth, all forecasts", 100.0 * all.share(), "%" },
-                { "", "interval of 80 % holds the truth, second half of lives", 100.0 * later.share(), "%" } });
+                { "", "coverage of the 80 % intervals, all forecasts", 100.0 * all.share(), "%" },
+                { "", "coverage of the 80 % intervals, second half of lives", 100.0 * later.share(), "%" } });
   return EXIT_DONE;
 }
 
@@ -326,10 +326,10 @@ void declareLife(OptionTable& table, LifeOptions& options)
   table.add("--hours", options.hours, "longest duration of use [h]").range(1e-3, 1e9);
   table
       .add("--positions", options.positions,
-           "number of wave generator angles per tooth pitch, over which quantities are averaged")
+           "number of wave generator angles per tooth pitch, over which the program averages the drive's loads")
       .range(1, 100000);
   table.flag("--grease-changes", options.grease_changes, "change the grease whenever it is due");
-  table.add("--csv", options.csv, "file for the rows");
+  table.add("--csv", options.csv, "file for the state of the drive over the hours of use");
   addCommonOptions(table, options);
 }
 

@@ -198,7 +198,7 @@ void printExpectation(const Plan& plan, unsigned jobs)
   values.push_back({ "response surfaces to build", std::to_string(std::llround(surfaces)), "" });
   values.push_back(
       { "expected time, " + std::to_string(jobs) + " jobs", shortTime(surface_time + run_time / together), "" });
-  values.push_back({ "numbers of all files", bytes > 0.0 ? rounded(bytes / 1e6) : "-", "MB" });
+  values.push_back({ "size of the numbers in all files", bytes > 0.0 ? rounded(bytes / 1e6) : "-", "MB" });
   printValues(values);
   std::cout << "The time is estimated from one run of each class and duty cycle, tried for at most " << SAMPLE
             << " s, and from the time that its first response surface takes.\n";
@@ -240,7 +240,7 @@ void declare(OptionTable& table, SweepCommandOptions& options)
   table.flag("--dry-run", options.dry_run, "check every run and print the expected time and size, without simulating");
   table.flag("--list", options.list, "print the index with every run of the plan, without simulating");
   table.flag("--json", options.json,
-             "print the numbers of done, present and failed runs as one JSON document on stdout");
+             "print as one JSON document on stdout how many runs were done, were already present, and failed");
 }
 
 void tellResult(const SweepCommandOptions& options, const SweepResult& result)

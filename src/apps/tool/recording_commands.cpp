@@ -33,7 +33,7 @@ int printFollowed(const PrintedFollow& options, const Followed& followed)
 }
 
 const Subcommand FOLLOW{ Subject::RECORDING, "follow",
-                         "run a sound joint on a recording: measured and predicted motion and current",
+                         "run the twin of a sound joint along a recording: measured and predicted motion and current",
                          declarePrinted<FollowOptions>, runWatched<follow, printFollowed, true, PrintedFollow> };
 
 using PrintedIndicators = Printed<IndicatorsOptions>;

@@ -368,7 +368,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   {
     failWithoutInputs(bag, options, found, parameters.joint.name);
   }
-  warn(found.without_effort, "messages name " + parameters.joint.name + " but give no effort for it; ignored");
+  warn(found.without_effort, "messages name " + parameters.joint.name + " without an effort; ignored");
   warn(found.damaged, "damaged messages on input topics; ignored");
   warn(found.refused_faults, "faults of unknown kind or with a value out of range; ignored");
   if (!found.other_joints.empty())

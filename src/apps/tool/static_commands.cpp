@@ -293,7 +293,7 @@ void declarePitch(OptionTable& table, PitchOptions& options)
 {
   table
       .add("--positions", options.positions,
-           "number of wave generator angles per tooth pitch, over which quantities are averaged")
+           "number of wave generator angles per tooth pitch, over which the program averages torques")
       .range(1, 100000);
   addFaultOption(table, options);
   addCommonOptions(table, options);

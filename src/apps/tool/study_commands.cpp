@@ -276,7 +276,7 @@ int ratchet(const RatchetOptions& options)
                               { "peak.mesh_force_max", "mesh force, largest", peak.mesh_force_max, "N" },
                               { "peak.wave_generator_force_max", "wave generator force, largest",
                                 peak.wave_generator_force_max, "N" },
-                              { "peak.snaps", "snaps before the largest torque", peak.snaps },
+                              { "peak.snaps", "snaps of the teeth before the largest torque", peak.snaps },
                               { "peak.teeth_jumped", "teeth jumped", peak.teeth_jumped },
                               { "peak.teeth_loaded", "teeth loaded", peak.teeth_loaded },
                               { "rows", "", Table(RATCHET_COLUMNS, result.rows).rows() } });
