@@ -17,7 +17,7 @@
 
 namespace
 {
-/// Reads a number from the parameter server. @throws hjt::ParameterError if it is missing, no number, or not positive.
+/// Reads a positive number from the parameter server. @throws hjt::ParameterError if there is none.
 double readPositive(const ros::NodeHandle& node, const std::string& name, const std::string& unit)
 {
   double value = 0.0;
@@ -28,7 +28,7 @@ double readPositive(const ros::NodeHandle& node, const std::string& name, const 
   return value;
 }
 
-/// Reads a text from the parameter server. @throws hjt::ParameterError if it is missing or empty.
+/// Reads a text from the parameter server. @throws hjt::ParameterError if the text is missing or empty.
 std::string readText(const ros::NodeHandle& node, const std::string& name, const std::string& meaning)
 {
   std::string value;

@@ -43,7 +43,7 @@ namespace hjt
 {
 namespace
 {
-/// Whether this node is a publisher of `topic` in `publishers`, which is part of a master's state.
+/// Whether `publishers`, the publishers in the state of a ROS master, has this node for `topic`.
 bool hasThisNode(XmlRpc::XmlRpcValue& publishers, const std::string& topic)
 {
   for (int i = 0; i < publishers.size(); ++i)
@@ -84,7 +84,7 @@ bool waitForShutdownOrNewMaster()
 {
   constexpr int LOOKS = 100;  // number of polls of ros::ok() between two questions to the master
   constexpr int MISSES =
-      2;  // successive negative answers that show a new master; a master that starts or ends may cause a single one
+      2;  // successive negative answers that show a new master; a master that starts or ends may give only one
   const ros::WallDuration period(0.05);
   int misses = 0;
   for (int look = 1; ros::ok() && misses < MISSES; ++look)
@@ -100,7 +100,7 @@ bool waitForShutdownOrNewMaster()
 
 /// The live twin: connects a `Twin` to the topics and services of a node.
 ///
-/// It has these threads: the loop advances the twin, a publisher sends the messages, and another thread ages the drive.
+/// Threads of the node: a loop advances the twin, a publisher sends the messages, and a third thread ages the drive.
 /// Callbacks, diagnostics and services run in at least two threads of a spinner, because a reset waits for the loop.
 class TwinNode
 {
@@ -378,8 +378,8 @@ std::string affixOf(const ros::NodeHandle& node, const std::string& key)
   return affix;
 }
 
-/// Runs the twins of all joints of the arm `asked`. Their parameters are those of the arm's files, changed by those of
-/// the node. The function writes them to the parameter server, in the namespace of each joint.
+/// Runs the twins of all joints of the arm `asked`. The parameters of the node replace those of the arm's files. The
+/// function writes the parameters of each joint to the parameter server, in the namespace of the joint.
 void runArm(ros::NodeHandle& node, const std::string& asked, const hjt::FoundParameters& found)
 {
   const auto directory = hjt::configurationDirectory("");

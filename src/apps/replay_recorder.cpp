@@ -50,7 +50,7 @@ std::set<std::string> topicsToRecord(const std::string& played_bag, const std::s
 /// messages lose joint states if the machine stalls for 0.1 s. With `--all` on a simulated clock `rosbag record`
 /// searches for topics only once the clock runs, and misses the first messages.
 ///
-/// Received messages wait in memory for the disk, up to a number of bytes. Beyond this number messages are lost and
+/// Received messages wait in memory for the disk, up to `buffer` bytes. Messages beyond this size are lost and
 /// counted.
 class TopicRecorder
 {

@@ -41,7 +41,7 @@ double timeOf(Stamp stamp)
   return toSeconds(stamp - EPOCH);
 }
 
-/// Simulation of an arm. With its controller, the arm's instants are later than the importer's times by
+/// Simulation of an arm. If the arm has its controller, the arm's instants are later than the importer's times by
 /// MovingArm::SETTLING and the lead-in.
 class ArmSimulation : public Simulation
 {

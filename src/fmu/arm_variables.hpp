@@ -29,7 +29,7 @@ enum ArmReference : unsigned
   WRENCH_MOMENT,
   PAYLOAD_MASS,
   PAYLOAD_CENTRE,
-  FIRST_ARM_OUTPUT,  ///< first of seven outputs, those of ARM_QUANTITIES from the feedforward's current on
+  FIRST_ARM_OUTPUT,  ///< first of seven outputs: those in ARM_QUANTITIES from the feedforward's current on
   TOOL_ORIENTATION = FIRST_ARM_OUTPUT + 7,
   TOOL_ERROR,
   PROTECTIVE_STOP,

@@ -71,7 +71,7 @@ inline Status refuse(Instance* instance, const char* name) noexcept
   return guarded(instance, [&](Instance&) { throw CallError(std::string(name) + " is not supported by this unit"); });
 }
 
-/// A new instance. If this fails: null, and a message even if logging is off. `check` throws if the call is invalid.
+/// A new instance. After a failure: null, with a message even if logging is off. `check` throws for an invalid call.
 template <class Check>
 Instance* instantiated(const char* token, const char* resources, bool logs, const Log& log, const Check& check) noexcept
 {
@@ -101,7 +101,7 @@ Instance* instantiated(const char* token, const char* resources, bool logs, cons
   return nullptr;
 }
 
-/// Doubles those `letters` in a text that have a meaning in an importer's log.
+/// Text with each of `letters` doubled, because these letters have a meaning in an importer's log.
 inline std::string doubled(const std::string& text, const char* letters)
 {
   std::string found;

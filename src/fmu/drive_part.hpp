@@ -14,10 +14,10 @@ namespace hjt::fmu
 class DrivePart
 {
 public:
-  /// Part of the drive whose variables begin at `first` and have this prefix. `variables` must outlive this object.
+  /// Part of the drive whose variables begin at index `first` and with `prefix`. `variables` must outlive this object.
   DrivePart(const std::vector<FmuVariable>& variables, std::size_t first, const std::string& prefix);
 
-  std::size_t end() const noexcept { return end_; }  ///< value reference after the last one of the drive
+  std::size_t end() const noexcept { return end_; }  ///< value reference after the last variable of the drive
 
   /// `base`, changed by the parameters and faults that the importer has set. @throws ParameterError.
   Parameters parameters(const Parameters& base, const Values& values) const;

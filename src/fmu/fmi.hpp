@@ -24,10 +24,10 @@ enum class Status : int
   FATAL
 };
 
-/// Categories of messages in the log: first information and warnings, then errors.
+/// Categories of messages in the log: the first for information and warnings, the second for errors.
 constexpr const char* LOG_CATEGORIES[]{ "logStatusWarning", "logStatusError" };
 
-/// Index of a variable in the unit's list. FMI 2.0 has no arrays, so a reference of FMI 2.0 also contains the element.
+/// Index of a variable in the unit's list. FMI 2.0 has no arrays: its references also contain the element of an array.
 using ValueReference = std::uint32_t;
 constexpr unsigned ELEMENT_SHIFT = 16;  ///< reference = element << ELEMENT_SHIFT | variable
 

@@ -34,7 +34,7 @@ struct UnitDescription
   std::vector<FmuVariable> variables;
 };
 
-/// A unit as exponents of the base units kg, m, s, A, K, rad. FMI needs no exponents for other units than those below.
+/// A unit of measurement with exponents of the base units kg, m, s, A, K, rad. Units without a row need no exponents.
 struct UnitRow
 {
   const char* name;
@@ -324,8 +324,8 @@ public:
     texts_ += text;
   }
 
-  /// Adds a drive with the files that its parameters name. @returns the parameters with the names that these files have
-  /// in the unit.
+  /// Adds a drive with the files that `parameters` name. @returns the parameters with the names that the files have in
+  /// the unit.
   Parameters addDrive(const std::string& folder, Parameters parameters)
   {
     carry(folder, parameters.indicators.signatures, "signatures.yaml");
@@ -353,8 +353,8 @@ private:
   std::string texts_;
 };
 
-/// Adds to the archive the unit's library and the libraries that it loads, with their licences, which Debian has in
-/// /usr/share/doc/libNAME-VERSION/copyright.
+/// Adds to the archive the unit's library and the libraries that this library loads, with the licences, which Debian
+/// has in /usr/share/doc/libNAME-VERSION/copyright.
 void addLibraries(const UnitLibraries& libraries, const std::string& name, Version version, Zip& zip)
 {
 #ifdef __aarch64__

@@ -16,7 +16,7 @@ struct UnitLibraries
   std::vector<std::string> others;  ///< paths of the libraries that `own` loads and that a system may lack
 };
 
-/// Content of the file of a co-simulation unit for a drive, with the files that its parameters name. @throws
+/// Content of the file of a co-simulation unit for a drive, with the files that `parameters` name. @throws
 /// InputError.
 std::string driveFmu(const Parameters& parameters, const UnitLibraries& libraries, Version version);
 

@@ -96,10 +96,10 @@ public:
   const State& state() const noexcept { return state_; }
   void takeUp(const State& state) { state_ = state; }
 
-  /// A state as bytes, which another process with this unit can also read. The reader detects damage, but not forgery.
+  /// A state as bytes, which another process with the same unit can read. `deserialised` detects damage, not forgery.
   /// @throws InputError.
   std::string serialised(const State& state) const;
-  /// A state from bytes. The function repeats the simulation from its start. @throws InputError.
+  /// A state from bytes of `serialised`. The function repeats the simulation from the start. @throws InputError.
   std::unique_ptr<State> deserialised(std::string_view bytes) const;
 
 private:

@@ -81,7 +81,7 @@ public:
   std::string bytes() const;
 
   /// Replaces this journal by the journal in `bytes`, and repeats it with a new simulation of `unit`. `values`: the
-  /// parameters; their inputs are replaced. `end`: end of the last step, or `start` without steps [s]. @throws
+  /// parameters; the journal replaces the inputs. `end`: end of the last step, or `start` without steps [s]. @throws
   /// InputError if the bytes are not a journal of this unit with this end, ParameterError as Unit::start does.
   std::unique_ptr<Simulation> replay(std::string_view bytes, const Unit& unit, Values values, double start, double end,
                                      const Notice& notice);

@@ -31,7 +31,7 @@ class Simulation
 public:
   virtual ~Simulation() = default;
 
-  /// A copy at the same instant. With equal inputs, copy and original give bit-identical results.
+  /// A copy at the present instant. With equal inputs, copy and original give bit-identical results.
   virtual std::unique_ptr<Simulation> copy() const = 0;
 
   /// Steps with the inputs in `values` to the last instant that is not after `end` [s], without allocation. @returns

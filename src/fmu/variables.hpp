@@ -36,7 +36,7 @@ struct Value
   std::string text{};
 };
 
-/// A variable of a unit, for the unit's description and calls. Its value reference is its index in the list of all.
+/// A variable of a unit, for the unit's description and calls. Its index in the list of all is the value reference.
 struct FmuVariable
 {
   std::string name;
@@ -48,7 +48,7 @@ struct FmuVariable
   std::optional<Range> range{};
   bool is_array{};
   bool is_discrete{};  ///< whether an input of type FLOAT64 changes at discrete times only
-  bool is_clamped{};   ///< whether the twin clamps a number out of range of this input
+  bool is_clamped{};   ///< whether the twin clamps numbers out of the range of this input
 };
 
 constexpr std::size_t TIME = 0;  ///< value reference of the time in every unit
@@ -86,8 +86,8 @@ const std::vector<ToothOutput>& toothOutputs();
 
 FmuVariable timeVariable();
 
-/// Adds the variables of a drive with this prefix. Some parameters are no variables: those of a twin beside a robot, of
-/// publishing, those that would change sizes or steps, and in an arm also those that the arm determines.
+/// Adds the variables of a drive with `prefix`. Some parameters are no variables: those for a twin beside a robot or
+/// for publishing, those that would change sizes or steps, and in an arm also those that the arm determines.
 void addDrive(const Parameters& parameters, const std::string& prefix, std::vector<FmuVariable>& all);
 
 /// All variables of a unit for one drive: the time, then the variables of the drive.
@@ -96,10 +96,10 @@ std::vector<FmuVariable> driveVariables(const Parameters& parameters);
 /// Value reference of the place of a kind of fault, counted from the first variable of the drive.
 std::size_t placeReference(std::size_t kind);
 
-/// Token by which a unit detects that its description, library and resources belong together. It follows from the
-/// texts of the resources and from the version of the package.
+/// Token by which a unit detects that its description, library and resources belong together. The token follows from
+/// the texts of the resources and from the version of the package.
 std::string instantiationToken(const std::string& text);
-void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError for another token
+void requireToken(const std::string& token, const std::string& text);  ///< @throws InputError for a wrong token
 
 /// Parameters whose value is the name of a file. The file is in the unit.
 constexpr const char* FILE_PARAMETERS[]{ "indicators.signatures", "manufacture.flexspline_pitch_table",

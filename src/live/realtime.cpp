@@ -20,7 +20,7 @@ std::string userName()
   return entry != nullptr ? entry->pw_name : std::to_string(geteuid());
 }
 
-/// Text of this process' limit for `resource`, in units of `unit`.
+/// Text of the limit that the system sets this process for `resource`, in units of `unit`.
 std::string limitText(decltype(RLIMIT_RTPRIO) resource, rlim_t unit)
 {
   rlimit limit{};

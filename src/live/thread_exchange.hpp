@@ -20,7 +20,7 @@ struct LiveInput
   std::size_t joint{};  ///< index of the joint that gets the input; 0 if there is one twin
 
   Stamp stamp() const noexcept { return stampOf(input); }
-  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< the input; null if it is a fault
+  const Input* value() const noexcept { return std::get_if<Input>(&input); }  ///< the input; null for a fault
   bool isOf(InputKind kind) const noexcept { return value() != nullptr && value()->kind == kind; }
 };
 
@@ -51,8 +51,8 @@ public:
     inputs_.push_back({ input, joint });
   }
 
-  /// Calls `use(inputs)` with the waiting inputs in order of arrival. Inputs that `use` does not remove stay in the
-  /// queue. Only the loop may call this function. It does not allocate. If a callback holds the lock, the function does
+  /// Calls `use(inputs)` with the waiting inputs in order of arrival, without allocation. Inputs that `use` does not
+  /// remove stay in the queue. Only the loop may call this function. If a callback holds the lock, the function does
   /// nothing and returns false.
   template <class Use>
   bool use(Use&& use) noexcept

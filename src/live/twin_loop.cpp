@@ -25,7 +25,7 @@ constexpr milliseconds CYCLE_PERIOD{ 1 };
 constexpr milliseconds SHORT_PAUSE{ 4 };
 /// Longest sleep while no output is due. The sleep delays the answer to a user's request.
 constexpr milliseconds MAX_PAUSE{ 50 };
-/// Largest simulated time in one cycle [ns]. It exceeds MAX_PAUSE, so that a loop that is behind catches up.
+/// Largest simulated time in one cycle [ns]. The limit exceeds MAX_PAUSE, so that a late loop catches up.
 constexpr Stamp MAX_CATCH_UP = 60'000'000;
 /// Wall clock time after which a cycle begins no further step, so that a slow solver does not delay requests.
 constexpr milliseconds LONGEST_WORK{ 100 };
@@ -49,7 +49,7 @@ steady_clock::duration shortestPause(Stamp input_delay)
                                             CYCLE_PERIOD, SHORT_PAUSE);
 }
 
-/// Touches the pages of the stack, so that they are in memory before the first cycle.
+/// Touches all pages of the stack, so that the pages are in memory before the first cycle.
 __attribute__((noinline)) void touchStack()
 {
   std::array<volatile char, STACK_SIZE> stack;
@@ -164,8 +164,8 @@ void TwinLoop::cycle(steady_clock::time_point begin) noexcept
   twin_.show(status_);
 }
 
-/// Handles the inputs. The clock is read after the inputs have arrived, so that no input from after a jump of the clock
-/// counts as one from before.
+/// Handles the inputs. The clock is read after the inputs have arrived, so that no input that arrived after a jump of
+/// the clock counts as one from before the jump.
 void TwinLoop::heed(Inputs& inputs) noexcept
 {
   if (readClock(clock_()))
@@ -244,8 +244,8 @@ void TwinLoop::stampInputs(Inputs& inputs) noexcept
   inputs.erase(kept_end, inputs.end());
 }
 
-/// Keeps only the last due input of each kind while the twin waits for its start. Otherwise repeated inputs could fill
-/// the inbox, and it could not accept the torque that starts the twin.
+/// Keeps only the last due input of each kind while the twin waits for its start. If repeated inputs filled the inbox,
+/// the inbox could not accept the torque that starts the twin.
 void TwinLoop::thinOut(Inputs& inputs) noexcept
 {
   const Stamp due = limit();
@@ -303,7 +303,7 @@ void TwinLoop::start(Stamp stamp, Inputs& inputs) noexcept
   released_ = status_.clock;
   start_stamp_ = stamp;
   start_time_ = steady_clock::now();
-  // Inputs that were due before the start of the twin act from its first instant on, and do not count as late.
+  // Inputs that were due before the start of the twin act from the twin's first instant on, and do not count as late.
   for (LiveInput& input : inputs)
   {
     stampOf(input.input) = std::max(input.stamp(), stamp);

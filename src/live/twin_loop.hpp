@@ -19,8 +19,8 @@
 
 namespace hjt
 {
-/// Histogram of latencies from a microsecond to 17 s, with eight bins in each octave. Its size is fixed: adding a value
-/// does not allocate and takes a constant time.
+/// Histogram of latencies from a microsecond to 17 s, with eight bins in each octave. The size is fixed, so that adding
+/// a value does not allocate and takes a constant time.
 class LatencyHistogram
 {
 public:
@@ -41,8 +41,8 @@ public:
   std::uint64_t count() const noexcept { return count_; }
   Stamp largest() const noexcept { return largest_; }  ///< largest latency [ns]
 
-  /// Quantile of the counted latencies [ns], rounded up to the upper edge of its bin; 0 without latencies. `share` is
-  /// 0 ... 1.
+  /// Quantile `share` (0 ... 1) of the counted latencies [ns], rounded up to the upper edge of a bin; 0 without
+  /// latencies.
   Stamp quantile(double share) const noexcept
   {
     std::uint64_t counted = 0;
@@ -85,7 +85,7 @@ private:
   Stamp largest_{};
 };
 
-/// A small value that the loop shows to other threads. The loop never waits: it skips a write while a thread reads.
+/// A small value that the loop shows to other threads. The loop never waits: it omits a write while a thread reads.
 template <class Value>
 class TryLockValue
 {
@@ -142,7 +142,7 @@ private:
 
 enum class ClockKind : std::uint8_t
 {
-  RUNNING,  ///< the system's clock: every instant is due at its own time
+  RUNNING,  ///< the system's clock: an instant is due when the clock shows its time
   STEPPED   ///< /clock: all instants up to a time on /clock are due when the loop has read this time
 };
 
@@ -152,10 +152,10 @@ struct LoopStatus
   LoopState state{};
   Stamp clock{};        ///< last reading of the clock [ns]
   Stamp twin_stamp{};   ///< instant that the twin has reached [ns]
-  Stamp lag{};          ///< time from the reached instant to the one that the twin should have reached [ns]
+  Stamp lag{};          ///< instant that the twin should have reached - reached instant [ns]
   Stamp largest_lag{};  ///< largest lag since the last start or reset [ns]
   std::uint64_t cycles{};
-  std::uint64_t overruns{};     ///< number of cycles that worked longer than their period
+  std::uint64_t overruns{};     ///< number of cycles that took longer than their period
   std::uint64_t clock_jumps{};  ///< number of jumps of the clock, forwards and back
   Stamp last_jump{};            ///< size of the clock's last jump; > 0 forwards [ns]
   std::uint64_t resets{};       ///< number of resets that a user requested
@@ -178,7 +178,7 @@ public:
   virtual void push(const LiveInput& input) noexcept = 0;  ///< as Twin::push
   virtual bool step(Stamp until) noexcept = 0;             ///< as Twin::step
   virtual Stamp stamp() const noexcept = 0;                ///< as Twin::stamp
-  /// Sets the members of the status that only the twin knows. The loop calls it once in a cycle.
+  /// Sets those members of the status that the loop does not know. The loop calls this function once in a cycle.
   virtual void show(LoopStatus& status) noexcept = 0;
 
 protected:
@@ -212,7 +212,7 @@ private:
 ///
 /// The twin stays `input.delay` behind the clock and never skips time. After a forward step of the clock of up to
 /// MAX_CLOCK_STEP the twin catches up. Each cycle simulates a limited time, so that the loop still handles inputs and
-/// requests. If the clock jumps back, or forwards by more, the twin restarts.
+/// requests. If the clock jumps back, or further forwards, the twin restarts.
 ///
 /// With a continuous clock the loop sleeps until the next output is due, at least a fifth of `input.delay` (one
 /// millisecond to SHORT_PAUSE) and at most MAX_PAUSE. The results do not depend on the sleep, because inputs act by
@@ -222,15 +222,15 @@ class TwinLoop
 public:
   using Clock = std::function<Stamp()>;     ///< returns the present time [ns]; 0 if the clock has no time yet
   using AfterStep = std::function<void()>;  ///< called at every simulated instant; must not block or allocate
-  /// Called after each cycle with the instant that it reached. Returns the instant of the next output [ns]. It must not
-  /// block or allocate.
+  /// Called after each cycle with the instant that the cycle reached. Returns the instant of the next output [ns]. Must
+  /// not block or allocate.
   using AfterCycle = std::function<Stamp(Stamp)>;
 
   /// Largest difference of successive readings of the clock that is not a jump [ns]. Jumps come, for example, from the
   /// start of another recording or from a suspended machine.
   static constexpr Stamp MAX_CLOCK_STEP = 10'000'000'000;
 
-  /// Starts the thread. Without `after_cycle` every instant has an output. `parameters`: those of the twin, or of one
+  /// Starts the thread. Without `after_cycle` every instant has an output. `parameters`: those of the twin, or of any
   /// of several twins.
   TwinLoop(Advanced& twin, const Parameters& parameters, Inbox& inbox, Clock clock, ClockKind clock_kind,
            AfterStep after_step, AfterCycle after_cycle = {});
@@ -243,7 +243,7 @@ public:
 
   LoopStatus status() const { return shown_status_.read(); }
 
-  /// Handle of the loop's thread, for its priority and processor.
+  /// Handle of the loop's thread, by which applyRealtime sets the thread's priority and processor.
   std::thread::native_handle_type thread() { return thread_.native_handle(); }
 
 private:

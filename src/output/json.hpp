@@ -62,7 +62,7 @@ public:
   }
 
   std::string dump() const;       ///< indented document
-  double number() const;          ///< value of a number or truth value; NaN for any other content
+  double number() const;          ///< value of a number, 0 or 1 for a truth value; NaN for any other content
   std::string shortText() const;  ///< text for people: numbers with seven digits, truth values as yes or no
 
 private:

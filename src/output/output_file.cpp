@@ -13,7 +13,7 @@
 #include "base/whole_file.hpp"
 #include "harmonic_joint_twin/base/errors.hpp"
 
-// Version 6 of fmt cannot compile a format, so it gets the format as text.
+// Version 6 of the library fmt cannot compile a format, so the library gets the format as text.
 #ifndef FMT_COMPILE
 #define FMT_COMPILE(text) text
 #endif
@@ -110,7 +110,7 @@ void CsvWriter::writeRow(const std::vector<double>& values)
   for (std::size_t column = 0; column < values.size(); ++column)
   {
     Text& text = texts_[column];
-    // Writes the shortest text that reads back as the same number. An unchanged value keeps its text of the row before.
+    // Writes the shortest text that reads back as this number. A value equal to that of the row before keeps its text.
     if (text.size == 0 || std::memcmp(&text.value, &values[column], sizeof(double)) != 0)
     {
       text.value = values[column];

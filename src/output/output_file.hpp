@@ -10,19 +10,19 @@
 
 namespace hjt
 {
-/// Checks that a file may be written. @throws InputError if `path` is the input file, or if it exists and `force` is
-/// false. An empty path means that the option was not given, and is accepted.
+/// Checks that the file `path` may be written. @throws InputError if `path` is the file `input`, or if the file exists
+/// and `force` is false. An empty path is accepted: the user has not given the option.
 void requireWritable(const std::string& path, bool force, const std::string& input = "");
 
-/// Makes the directory of a report, for the file `data` and a page. @throws InputError if it cannot be made, or if it
-/// contains files and `force` is false.
+/// Makes the directory of a report, for the file `data` and a page. @throws InputError if the directory cannot be made,
+/// or if the directory contains files and `force` is false.
 void prepareReport(const std::string& folder, const std::string& data, bool force);
 
 /// Flushes standard output. @throws InputError if not everything could be written.
 void finishStandardOutput();
 
-/// Writes a CSV file of numbers that read back exactly. The file has the name `PATH.NUMBER.part` until `close` renames
-/// it. Without `close` it keeps this name. A device, a pipe and standard output are written directly.
+/// Writes a CSV file of numbers that read back exactly. The file has the name `PATH.NUMBER.part` until `close` gives it
+/// the name PATH. Without `close` the first name stays. A device, a pipe and standard output are written directly.
 class CsvWriter
 {
 public:
@@ -51,7 +51,7 @@ private:
 
   const std::string path_;
   std::string target_;   // final path, after resolving links
-  std::string written_;  // path of the file while it is written
+  std::string written_;  // path of the file before `close`
   bool has_rows_{};
   std::vector<Text> texts_;
   std::vector<char> line_;

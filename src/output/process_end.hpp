@@ -17,9 +17,9 @@ enum ExitCode : int
   EXIT_FAILED = 1,
   EXIT_USAGE = 2,
   EXIT_DEPARTS = 3,     ///< the verdict is at least as bad as the level of --fail-on
-  EXIT_NOT_JUDGED = 4,  ///< no joint could be judged, or with `--fail-on not-judged` one joint could not
+  EXIT_NOT_JUDGED = 4,  ///< no joint could be judged, or with `--fail-on not-judged` at least one could not
   EXIT_STOPPED = 5,     ///< a protective stop ended the motion of the arm
-  EXIT_BY_SIGNAL = 128  ///< a signal ended the process; its number is added
+  EXIT_BY_SIGNAL = 128  ///< a signal ended the process; the code is this plus the number of the signal
 };
 
 /// Number of the signal that arrived within an InterruptScope; 0 if none arrived.

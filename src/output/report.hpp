@@ -14,7 +14,7 @@ namespace hjt
 /// Text of a number with seven digits, for people.
 std::string shortNumber(double value);
 
-/// A value with its name and unit, which is printed on a line of its own.
+/// A named value with unit, which is printed on a separate line.
 struct NamedValue
 {
   std::string name;
@@ -66,7 +66,7 @@ public:
   bool empty() const { return cells_.empty(); }
   Json rows() const;                                         ///< the table as one object for each row
   Json columns() const;                                      ///< the table as one array for each column
-  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< prints columns of at least this width
+  void print(std::size_t least_width = NUMBER_WIDTH) const;  ///< prints columns of at least `least_width` characters
 
 private:
   std::vector<std::string> keys_;

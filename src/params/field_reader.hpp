@@ -27,7 +27,7 @@ constexpr const char* FAULT_FORM = "{kind: ..., severity: ..., place: ..., onset
 class FieldReader
 {
 public:
-  /// `file`: the file of all values if there is only one. Messages about missing keys name it.
+  /// `file`: file of all values if one file has them all. Messages about missing keys name `file`.
   explicit FieldReader(const ParameterMap& map, std::string file = "") : map_(map), file_(std::move(file)) {}
 
   void operator()(const std::string& key, const char* unit, double& field, const Range& range, const Meaning& meaning)
@@ -272,7 +272,7 @@ private:
   bool inRange(const std::string& key, const char* unit, const ParameterValue& configured, double value,
                const Range& range)
   {
-    // For NaN these comparisons are false.
+    // isfinite is false for NaN.
     if (std::isfinite(value) && value >= range.min && value <= range.max)
     {
       return true;

@@ -96,7 +96,7 @@ void visitValues(const Parameters& parameters, const Take& take)
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
-                // A number is described by (unit, value, range, meaning), any other field by (value, meaning).
+                // Arguments after the key: unit, value, range, meaning for a number, else value and meaning.
                 if constexpr (sizeof...(rest) == 0)
                 {
                   take(key, first);

@@ -114,7 +114,7 @@ struct ConfigurationOptions
 
 constexpr const char* COMMON_GROUP = "Common options";
 
-/// Adds the options for overlay files and assignments. In Python the argument `overlays` replaces these options.
+/// Adds the options for overlay files and assignments. The argument `overlays` of a Python call replaces these options.
 void addOptions(OptionTable& table, ConfigurationOptions& options);
 /// Adds the options for overlay files and assignments, and the option that allows overwriting files.
 void addOptions(OptionTable& table, ConfigurationOptions& options, bool& force);

@@ -74,7 +74,7 @@ struct Twin::Impl
   JointStepper stepper;
   ObservedRing observed_ring;
   Stamp step_length;
-  std::int64_t instant{};  // number of the present instant: its time over step_length
+  std::int64_t instant{};  // number of the present instant: time of the instant / step_length
   Stamp now{};
   // Present instant, or the stamp of the reset. An input with an earlier stamp is late.
   Stamp simulated_until{};

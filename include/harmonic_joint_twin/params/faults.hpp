@@ -55,7 +55,7 @@ struct Fault
 /// Parts that Fault::place counts.
 enum class FaultPlace : std::uint8_t
 {
-  MEMBER,      ///< no places: the fault is always that of the whole part
+  MEMBER,      ///< no places: the fault always concerns the whole part
   TOOTH,       ///< teeth of the flexspline
   SEGMENT,     ///< segments of the rim, each from one tooth to the next
   LOBE,        ///< lobes of the wave generator: 0 at the wave generator's angle, 1 half a turn away

@@ -27,7 +27,7 @@ constexpr const char* FAULTS = "faults";
 std::string faultKey(int number);     ///< key of fault N: `faults.N`
 void eraseFaults(ParameterMap& map);  ///< removes all faults, because a new list of faults replaces the old list
 
-/// Reads a YAML file of the form `section: {key: value}`, with the list `faults`. Its values replace those in `map`.
+/// Reads a YAML file of the form `section: {key: value}`, with the list `faults`. The values replace those in `map`.
 /// Numbers may have any decimal spelling, for example 1e-3 or 1.0e-3.
 /// @throws ParameterError that names file and line.
 void readYamlFile(const std::string& path, ParameterMap& map);
@@ -63,8 +63,8 @@ std::uint64_t parametersHash(const Parameters& parameters);
 /// Text of all parameters, one per line: `section.key: value  # [unit] meaning`.
 std::string describeParameters(const Parameters& parameters);
 
-/// Reads a text of describeParameters into `map`. Its faults replace those of `map`. @throws ParameterError that names
-/// `source` and line.
+/// Reads a text of describeParameters into `map`. The faults in the text replace those of `map`. @throws ParameterError
+/// that names `source` and line.
 void readDescription(const std::string& text, const std::string& source, ParameterMap& map);
 
 /// Table of docs/parameters.csv in Markdown, with key, type, unit, range and meaning of each parameter.

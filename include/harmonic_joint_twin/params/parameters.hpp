@@ -143,7 +143,7 @@ enum class StressPlace
 };
 constexpr std::size_t STRESS_PLACES = 3;
 
-/// Coefficients by which the stress of the flexspline follows from its shape (statics/flexspline_stress.hpp).
+/// Coefficients from which, with the shape of the flexspline, its stress is computed (statics/flexspline_stress.hpp).
 struct StressParameters
 {
   double tooth_base{};
@@ -218,7 +218,7 @@ enum class EffortUnit
 {
   CURRENT,       ///< current of the motor [A]
   JOINT_TORQUE,  ///< torque of the motor times the ratio, without the losses of the gear [N.m]
-  MOTOR_TORQUE   ///< torque of the motor at its shaft [N.m]
+  MOTOR_TORQUE   ///< torque at the motor's shaft [N.m]
 };
 
 struct InputParameters

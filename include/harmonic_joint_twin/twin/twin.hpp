@@ -40,7 +40,7 @@ struct JointOutputs
   double energy_residual{};      ///< supplied - stored - dissipated - released energy since the last reset [J]
   double dissipated_energy{};    ///< energy that all friction dissipated since the last reset [J]
   double released_energy{};      ///< stored energy that faults released when they set in, since the last reset [J]
-  bool brake_engaged{};          ///< whether the brake holds the motor within its play
+  bool brake_engaged{};          ///< whether the brake holds the motor within brake.play
   bool converged{ true };        ///< false: the ring did not converge, and the twin keeps the last converged state
   std::uint32_t iterations{};    ///< Newton iterations of the last step
   std::uint32_t substeps{};  ///< number of substeps of the last step, 1 ... 31; more than 1 for short natural periods
@@ -74,7 +74,7 @@ struct HealthReport
   MotionIndicators motion;     ///< indicators over the last turns, from the true angles
   LobeLoads lobes;             ///< loads of the lobes at the current instant
   SolverState solver_state{};  ///< state of the solver over the steps that Twin::health names
-  /// expected rms error of the mesh forces of loaded teeth at this speed and load, as the ring has no inertia [N]
+  /// expected rms error of the forces on loaded flanks at the present speed and load: the ring has no inertia [N]
   double mesh_force_error{};
 };
 

@@ -405,7 +405,7 @@ void CommandLine::addSubcommands()
             { return std::pair(a->subject_, a->name_) < std::pair(b->subject_, b->name_); });
   for (const Subcommand* subcommand : all)
   {
-    // The sorting puts "life" before "life age", so the parent exists.
+    // The names are sorted: "life" comes before "life age", so the parent command exists.
     const bool inner = subcommand->name_.find(' ') != std::string::npos;
     CommandNode& parent = inner ? root_->subcommands.back() : *root_;
     CommandNode& node = parent.subcommands.emplace_back();

@@ -71,7 +71,7 @@ void fitFriction(const Parameters& parameters, ExportedJoint& joint)
   joint.friction_deviation = (line * fitted - friction).cwiseAbs().maxCoeff();
 }
 
-/// Comment for the XML file. It says what the format of the file cannot represent.
+/// Comment in the XML file about the properties of the joint that the format of the file cannot represent.
 std::string missing(const ExportedJoint& joint, const Parameters& parameters, bool has_armature, bool has_stiffness)
 {
   const auto text = [](double value) { return roundedText(value, 4); };
@@ -113,7 +113,7 @@ std::string urdf(const ExportedJoint& joint, const Parameters& parameters)
 
 std::string sdfLink(const char* name, double inertia)
 {
-  // The mass of 1 kg has no effect, because it rotates about its own axis.
+  // The mass of 1 kg has no effect, because the link rotates about its own centre.
   return std::string("    <link name=\"") + name + "\">\n      <inertial><mass>1</mass><inertia>" +
          element("ixx", inertia) + element("iyy", inertia) + element("izz", inertia) +
          "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial>\n    </link>\n";

@@ -84,7 +84,7 @@ std::map<std::string, std::string> meanings(const Parameters& parameters)
   return texts;
 }
 
-/// Writes the overlay, with a comment above each value. @throws InputError if it cannot be written.
+/// Writes the overlay, with a comment above each value. @throws InputError if the file cannot be written.
 void write(const GearOptions& options, const GearDesign& design, const Parameters& parameters, const std::string& title)
 {
   std::map<std::string, std::vector<DesignedParameter>> sections;

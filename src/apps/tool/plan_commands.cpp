@@ -64,7 +64,7 @@ std::set<std::string> surfacesOf(const Parameters& parameters)
   }
   catch (const ParameterError&)
   {
-    // The twin has no equilibrium, so its run will fail.
+    // The twin has no equilibrium, so the run of this twin will fail.
   }
   return asked->keys;
 }
@@ -82,7 +82,7 @@ public:
     std::size_t of_first_run{};  ///< number of missing surfaces of `first_run`
   };
 
-  /// Counts for the block. Checks runs for PATIENCE and assumes that the other runs need as many surfaces on average.
+  /// Counts the surfaces of a block. Checks runs for PATIENCE and assumes equally many surfaces per run for the rest.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;
@@ -123,7 +123,7 @@ private:
   std::set<std::string> known_;
 };
 
-/// Text of a number: two significant digits, or all digits before the decimal point if there are more.
+/// Text of a number with two significant digits, but at least with all digits before the decimal point.
 std::string rounded(double number)
 {
   constexpr double THREE_DIGITS = 99.5;
@@ -186,7 +186,7 @@ void printExpectation(const Plan& plan, unsigned jobs)
               << ", duty " << spec.duty_name << ", " << rounded(cost.real_time_factor)
               << " times as fast as real time\n";
   }
-  // All processors together build one surface. Each job simulates on one processor.
+  // All processors build one surface at a time. Each job simulates on one processor.
   const double together = std::min<double>(
       { static_cast<double>(jobs), static_cast<double>(processors()), static_cast<double>(plan.runs()) });
   std::vector<NamedValue> values{ { "runs", std::to_string(plan.runs()), "" } };
@@ -258,7 +258,7 @@ void tellResult(const SweepCommandOptions& options, const SweepResult& result)
   warn(result.rows_without_forces, WITHOUT_FORCES);
 }
 
-/// Runs `work` on the plan. With --list or --dry-run it only prints the index or the expectation.
+/// Runs `work` on the plan. With --list it only prints the index, with --dry-run only the expected time and size.
 int workOff(const SweepCommandOptions& given, SweepResult (*work)(const SweepOptions&))
 {
   if (given.list || given.dry_run)

@@ -40,7 +40,7 @@ enum ProfileColumn
 
 constexpr Range TIMES{ 0.0, 1e9 };  // range of a stamp [s]
 
-/// Inputs of a simulation: motor torque, load and brake over time. Each value is constant until the next one.
+/// Inputs of a simulation: motor torque, load and brake over time. Each value is constant until the next row.
 class TorqueProfile
 {
 public:
@@ -104,7 +104,7 @@ public:
   /// Gives the twin the inputs that act in its next step. `begin`: stamp of t = 0 [ns].
   void feed(Twin& twin, Stamp begin)
   {
-    // A torque of a profile can last for any time. It is commanded in every step, so that it does not time out.
+    // A torque of a profile can last for any time. The torque is commanded in every step, so that it does not time out.
     twin.commandMotorTorque(twin.stamp(), motor_torque_);
     const Stamp end = twin.stamp() + twin.stepLength();
     for (; next_ < inputs_.size() && begin + inputs_[next_].stamp < end; ++next_)
