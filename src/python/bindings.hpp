@@ -19,7 +19,7 @@ namespace hjt
 {
 namespace py = pybind11;
 
-// Functions that add the parts of the module. A part may use the types of the parts before it.
+// Functions that add the parts of the module. A part may use types of parts that were added before.
 void bindParameters(py::module& module);
 void bindHealth(py::module& module);
 void bindToothValues(py::module& module);
@@ -50,19 +50,19 @@ public:
   explicit NotConverged(const std::string& text) : std::runtime_error(text) {}
 };
 
-/// Thrown if a signal handler of Python has raised an exception. Python's error is then already set.
+/// Thrown if a signal handler of Python has raised an exception. This exception is already set as Python's error.
 struct Interrupted
 {
 };
 
-/// Throws `Interrupted` if a signal handler of Python has raised an exception, for example that of Ctrl-C. It checks at
-/// most twenty times a second, because taking the interpreter's lock can cost more than many steps.
+/// Throws `Interrupted` if a signal handler of Python has raised an exception, for example that of Ctrl-C. Checks at
+/// most twenty times a second, because taking the interpreter's lock can take longer than many steps of a twin.
 class InterruptCheck
 {
 public:
   InterruptCheck() : next_(now() + PERIOD) {}
 
-  /// Checks if the last check is at least PERIOD ago. @returns whether it has checked.
+  /// Checks for an exception if the last check is at least PERIOD ago. @returns whether it checked.
   bool operator()()
   {
     const double time = now();
@@ -154,8 +154,8 @@ void addText(Class& type)
   type.def("__repr__", [](const py::object& self) { return describeObject(self); });
 }
 
-/// Flag: a call without the interpreter's lock uses a Python object, and no other call may use the object meanwhile.
-/// The interpreter's lock protects the flag.
+/// Flag that a call without the interpreter's lock uses a Python object, so that no second call may use the object. The
+/// interpreter's lock protects the flag.
 class InUse
 {
 public:
@@ -181,7 +181,7 @@ public:
   /// `what`: name of the object in the error text.
   explicit InUse(const char* what) : what_(what) {}
 
-  /// Checks that the object is free. @throws std::runtime_error while it is in use.
+  /// Checks that the object is not in use. @throws std::runtime_error if the object is in use.
   void refuse() const
   {
     if (used_)
@@ -190,7 +190,7 @@ public:
     }
   }
 
-  /// Marks the object as in use. @throws std::runtime_error if it is already in use.
+  /// Marks the object as in use. @throws std::runtime_error if the object is already in use.
   [[nodiscard]] Hold hold()
   {
     refuse();

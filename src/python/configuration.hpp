@@ -24,7 +24,7 @@ class Configuration
 {
 public:
   /// The default configuration, changed by overlays (files or dicts). Later overlays replace values of earlier ones.
-  /// `directory`: that of the default configuration; empty: the one that the tool uses. @throws ParameterError.
+  /// `directory`: that of the default configuration; empty: that of the tool. @throws ParameterError.
   Configuration(const py::args& overlays, const std::string& directory);
 
   const Parameters& values() const { return values_; }

@@ -8,7 +8,7 @@ namespace
 {
 void bindErrors(py::module& module)
 {
-  // pybind11 tries the errors in reverse order of registration, so derived ones come after InputError.
+  // pybind11 tries the errors in reverse order of registration, so errors derived from InputError come after it.
   const auto input = py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   py::register_exception<ParameterError>(module, "ParameterError", input.ptr());
   py::register_exception<NotConverged>(module, "NotConverged", PyExc_RuntimeError);

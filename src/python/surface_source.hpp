@@ -14,12 +14,12 @@
 
 namespace hjt
 {
-/// Source of response surfaces that twins use while they are built without the interpreter's lock.
+/// Source of response surfaces for twins, whose construction does not hold the interpreter's lock.
 class SurfaceSourceOf
 {
 public:
-  /// `cache`: a directory; none: that of the tool. `progress`: Python function, called with the finished share 0 ... 1,
-  /// or None. `builders`: number of twins that are built one after the other and share equal surfaces.
+  /// `cache`: directory of surfaces; none: that of the tool. `progress`: None, or Python function that gets the finished
+  /// share 0 ... 1. `builders`: number of twins that are built one after the other and share equal surfaces.
   SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress, std::size_t builders = 1)
   {
     source_.cache_directory = cache ? *cache : surfaceCacheDirectory();
@@ -50,7 +50,7 @@ public:
     ++finished_;
   }
 
-  /// Issues Python warnings: why a surface is missing, or why it was not stored.
+  /// Issues Python warnings: why a surface is missing, or why a surface was not stored.
   void warn() const
   {
     for (const std::string& notice : notices_)

@@ -22,7 +22,7 @@ using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 class Recorded
 {
 public:
-  /// Takes the values of a column. @throws InputError if their number is not `rows`.
+  /// Takes the values of a column. @throws InputError unless the column has `rows` values.
   Recorded(const char* name, const std::optional<Values>& values, py::ssize_t rows) : values_(values)
   {
     if (values_ && (values_->ndim() != 1 || values_->size() != rows))

@@ -15,7 +15,7 @@ namespace
 {
 constexpr double LARGEST_TIME = 9e9;  // largest magnitude of a stamp [s]
 
-/// Checks a stamp. @throws InputError if its magnitude exceeds MAX_STAMP.
+/// Checks a stamp. @throws InputError if the magnitude of the stamp exceeds MAX_STAMP.
 Stamp checked(Stamp stamp)
 {
   if (!isStamp(stamp))

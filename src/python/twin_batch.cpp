@@ -54,7 +54,7 @@ public:
     }
     catch (const std::system_error&)
     {
-      // The system allows no more threads. The existing threads do the work.
+      // The system allows no further thread. The existing threads do the work.
     }
   }
 
@@ -65,7 +65,7 @@ public:
   {
     if (::getpid() != process_)
     {
-      // This is a forked process: the threads exist only in its parent.
+      // In a forked process the threads do not exist; they exist only in the parent.
       for (std::thread& other : others_)
       {
         other.detach();
@@ -86,8 +86,8 @@ public:
   std::size_t size() const noexcept { return others_.size() + 1; }
 
   /// Calls `task`, which must not throw, with each number of 0 ... count - 1 in no fixed order, and returns after the
-  /// last call. A thread takes `portion` numbers at once. Only one thread at a time may call this function. It does not
-  /// wait for threads that have taken no number, so that it also works in a forked process, which lacks the threads.
+  /// last call. A thread takes `portion` numbers at once. Only one thread at a time may call this function. `run` does
+  /// not wait for threads without a number, so that it also works in a forked process, which lacks the threads.
   void run(std::size_t count, std::size_t portion, const Task& task)
   {
     {
@@ -116,7 +116,7 @@ private:
     std::mutex mutex;
     std::condition_variable begun;
     std::condition_variable left;
-    const Task* task{};  // null if a thread cannot join the task any more
+    const Task* task{};  // null if no further thread can join the task
     std::size_t count{};
     std::size_t portion{};
     std::atomic<std::uint64_t> number{ 0 };
@@ -172,7 +172,7 @@ private:
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // blocks grow until one lasts this long
+constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // blocks grow until a block lasts this long
 constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of the first block, summed over all twins
 constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once (about 10 us on the surface)
 
@@ -377,7 +377,7 @@ private:
     return limit;
   }
 
-  /// Advances all twins by `steps`. It works in blocks; after each block all twins are at the same step.
+  /// Advances all twins by `steps`, in blocks. After each block all twins are at the same step.
   void march(const RunInputs& inputs, py::ssize_t steps, py::ssize_t every, StepRow* rows, const py::object& progress)
   {
     std::vector<Twin*> twins;

@@ -22,8 +22,8 @@
 namespace hjt
 {
 /// Checks an input. `load_torque_limit`: that of the twin [N.m]; `name`: returns the name of the value. @throws
-/// InputError for a load or temperature that a twin would clamp. A motor torque may exceed its limit: a real drive
-/// clamps it too, and the twin counts it.
+/// InputError for a load or temperature that a twin would clamp. A motor torque may exceed motor.torque_limit: twin and
+/// real drive clamp such a torque, and the twin counts the steps.
 template <class Name>
 void requireInput(InputKind kind, double value, double load_torque_limit, const Name& name)
 {
@@ -65,7 +65,7 @@ struct RunShape
   Axes axes{};
   double load_torque_limit{};  ///< output.load_torque_limit; the largest one of several twins [N.m]
   py::ssize_t twins{ 1 };
-  std::optional<py::ssize_t> steps;  ///< number of steps; empty if the first array with steps sets it
+  std::optional<py::ssize_t> steps;  ///< number of steps; empty: the first array with a value for each step sets it
 };
 
 /// An input of a run: None, a number, or an array.
@@ -209,7 +209,7 @@ private:
   std::vector<InputColumn> columns_;
 };
 
-/// @returns the number of steps. @throws InputError if it is missing or negative, or if `every` is below 1.
+/// @returns the number of steps. @throws InputError if `steps` is missing or negative, or if `every` is below 1.
 inline py::ssize_t requireSteps(const std::optional<py::ssize_t>& steps, py::ssize_t every)
 {
   if (!steps)

@@ -154,8 +154,8 @@ void ArmPublishers::drain()
 
 namespace
 {
-// Message definitions of ur_dashboard_msgs (github.com/UniversalRobots/Universal_Robots_ROS_Driver). Their md5sums
-// follow from these texts.
+// Message definitions of ur_dashboard_msgs (github.com/UniversalRobots/Universal_Robots_ROS_Driver). The
+// md5sums of the messages follow from these texts.
 constexpr const char* ROBOT_MODE =
     "int8 NO_CONTROLLER=-1\nint8 DISCONNECTED=0\nint8 CONFIRM_SAFETY=1\nint8 BOOTING=2\n"
     "int8 POWER_OFF=3\nint8 POWER_ON=4\nint8 IDLE=5\nint8 BACKDRIVE=6\nint8 RUNNING=7\n"
@@ -171,7 +171,7 @@ constexpr const char* SAFETY_MODE_SUM = "5da08725a63d4237bad689481131a84b";
 constexpr std::uint8_t NORMAL = 1;
 constexpr std::uint8_t PROTECTIVE_STOP = 3;
 
-/// Message with a mode of the robot, which is one byte.
+/// Message with a mode of the robot; the content is one byte.
 topic_tools::ShapeShifter makeMode(const char* sum, const char* type, const char* definition, std::uint8_t mode)
 {
   topic_tools::ShapeShifter message;

@@ -48,7 +48,7 @@ struct JointTolerance
 /// Goal of a commanded motion: tolerances that the joints must keep.
 struct ArmGoal
 {
-  std::uint64_t number{};            ///< number of the command; later commands have larger numbers
+  std::uint64_t number{};            ///< number of the command; each command has a larger number than the one before
   std::vector<JointTolerance> path;  ///< tolerances of the joints during the motion; empty: no goal
   std::vector<JointTolerance> end;   ///< tolerances of the joints at the end of the motion
   double patience{};                 ///< time after the end of the motion within which the arm must arrive [s]
@@ -167,14 +167,14 @@ private:
   GoalReport report_;
 };
 
-/// The topics of an arm's twin: joint_states as of the robot's driver, actual and wanted pose of the tool. Each drive
-/// has the topics of a joint's twin in a namespace of its own.
+/// The topics of an arm's twin: joint_states like that of the robot's driver, and actual and wanted pose of the tool.
+/// Each drive has the topics of a joint's twin in a separate namespace.
 class ArmPublishers
 {
 public:
   ArmPublishers(ros::NodeHandle& node, const ArmDescription& arm, const ArmTwin& twin);
 
-  /// For the loop: fills the due messages that have subscribers. It neither allocates nor locks.
+  /// For the loop: fills the due messages that have subscribers. The call neither allocates nor locks.
   void offer(MovingArm& arm) noexcept;
 
   /// For the loop: as OutputPublishers::finishCycle, for the topics of all drives and of the arm.
@@ -197,7 +197,7 @@ private:
   OutputChannel<sensor_msgs::JointState> states_;
   OutputChannel<Pose> tool_;
   OutputChannel<Pose> wanted_tool_;
-  PublisherThread thread_;  // last, because it uses the other members
+  PublisherThread thread_;  // last member, because the thread uses the other members
 };
 
 /// State of the arm's twin in /diagnostics: whether a protective stop holds the arm, which drives are overloaded, and
@@ -241,7 +241,7 @@ class Handover
 public:
   explicit Handover(Value unused) : value_(std::move(unused)) {}
 
-  /// Sets the value. It replaces a value that the loop has not taken. Thread-safe.
+  /// Sets the value, which replaces a value that the loop has not yet taken. Thread-safe.
   void give(Value value)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -382,7 +382,7 @@ private:
 };
 
 /// Offers the action FollowJointTrajectory in the namespace of `~controller`, as the robot's driver does, while the
-/// result exists. If control_msgs was missing at build time, there is no action, and the function logs this.
+/// result exists. If control_msgs was missing at build time, the function only logs that no action exists.
 std::shared_ptr<void> offerArmAction(ros::NodeHandle& node, ArmNode& arm);
 
 /// The live twin of an arm with its action server.

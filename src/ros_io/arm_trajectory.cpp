@@ -84,8 +84,8 @@ double greatestSpeed(const JointMotion& from, const JointMotion& to, double leng
   return greatest;
 }
 
-/// Sets missing velocities: at a point the slope between the points before and after it; 0 at the last point, and for
-/// joints that the message does not name.
+/// Sets missing velocities: at a point the slope from the point before to the point after; 0 at the last point, and
+/// for joints that the message does not name.
 void fillVelocities(const JointTrajectory& message, const std::vector<std::size_t>& places,
                     std::vector<ArmSetPoint>& points)
 {
@@ -131,7 +131,7 @@ std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescrip
 
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present)
 {
-  // largest deceleration of the fastest joint; the gentle motion has half of it [rad/s^2]
+  // largest deceleration of the fastest joint, twice that of the gentle motion [rad/s^2]
   constexpr double ACCELERATION = 4.0;
   constexpr double SHORTEST = 0.2;  // least time until all joints rest [s]
   double fastest = 0.0;

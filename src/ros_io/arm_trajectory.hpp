@@ -20,6 +20,6 @@ std::string readTrajectory(const trajectory_msgs::JointTrajectory& message, cons
 /// Error in the joint names of a trajectory; empty if the names are valid.
 std::string jointErrors(const trajectory_msgs::JointTrajectory& message, const ArmDescription& arm);
 
-/// Set points that bring all joints from the present state to rest, at the same time.
+/// Set points that bring all joints from the state `present` to rest, all at one time.
 std::vector<ArmSetPoint> stopFrom(const std::vector<JointMotion>& present);
 }  // namespace hjt

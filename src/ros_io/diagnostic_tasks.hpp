@@ -59,7 +59,7 @@ public:
   {
   }
 
-  /// Adds a task. Members of its owner judge and report it. The owner must outlive this object.
+  /// Adds a task, which members of `owner` judge and report. The owner must outlive this object.
   template <class Owner>
   void add(const std::string& name, const Owner* owner, DiagnosticVerdict (Owner::*judge)() const,
            void (Owner::*report)(diagnostic_updater::DiagnosticStatusWrapper&) const)
@@ -123,7 +123,7 @@ private:
   ros::Publisher publisher_;
 };
 
-/// Whether a counter has increased in the last MEMORY seconds of wall clock time. So a reader at 1 Hz sees each event.
+/// Whether a counter has increased in the last MEMORY seconds of wall clock time. A reader at 1 Hz sees each event.
 class RecentEvents
 {
 public:
@@ -219,7 +219,7 @@ public:
   }
 
 private:
-  // Time without a change of the ROS clock after which it counts as stopped [s, wall clock].
+  // Time without a change of the ROS clock after which the clock counts as stopped [s, wall clock].
   static constexpr double CLOCK_STANDS_AFTER = 1.0;
   // Lag of the twin behind the clock above which the node warns [s].
   static constexpr double LAG_WARNING = 1.0;

@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// Text of the assessment. A reported fault remains until later windows contradict it.
+/// Text of the assessment. A reported fault stays in the text until later windows contradict the fault.
 std::string verdictText(const Assessment& assessment);
 
 /// Adds cause, evidence and windows of an assessment to the diagnostics.

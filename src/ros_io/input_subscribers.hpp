@@ -30,7 +30,7 @@ namespace hjt
 constexpr double WARNING_PERIOD = 5.0;
 
 /// Subscribes to topics on which any node may publish. A message of more than MAX_BYTES is counted, not deserialised,
-/// because its content would take a multiple of its length in memory.
+/// because the content would take a multiple of the message's length in memory.
 struct InputTopics
 {
   /// Twice the size of a JointState of 1000 joints [bytes].
@@ -104,7 +104,7 @@ public:
 private:
   void receive(const harmonic_joint_twin::Fault& message)
   {
-    // Least time between two warnings. It is short, because faults are single events with their own reasons [s].
+    // Least time between two warnings [s]. The time is short, because a warning says why a single fault was refused.
     constexpr double WARNING_PERIOD = 1.0;
     std::vector<Fault> steps;
     const std::string errors = readFault(message, twin_.parameters(), steps);
@@ -138,8 +138,8 @@ struct MessageCounters
   std::uint64_t too_large{};       ///< number of messages of more than InputTopics::MAX_BYTES
 };
 
-/// Subscribes to the topics of torques and faults, and puts their content with its stamp into the inbox. A message
-/// without a stamp gets the time of its reception.
+/// Subscribes to the topics of torques and faults. Puts the content of a message into the inbox, with the stamp or, for
+/// a message without a stamp, with the time of reception.
 class InputSubscribers
 {
 public:

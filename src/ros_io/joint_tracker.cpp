@@ -293,7 +293,7 @@ bool JointTracker::hasStopped() const
   return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
 }
 
-/// Verdict on the rows. If the solver has failed recently, its level is ERROR with this reason.
+/// Verdict on the rows. If the solver has failed recently, the level is ERROR and the reason this failure.
 Verdict JointTracker::verdictNow() const
 {
   Verdict verdict = verdict_.now();
@@ -305,7 +305,7 @@ Verdict JointTracker::verdictNow() const
   return verdict;
 }
 
-/// Publishes a verdict if it has changed or covers more rows. The last verdict stays latched.
+/// Publishes the verdict if it differs from the last one or covers more rows. The last verdict stays latched.
 void JointTracker::publishVerdict()
 {
   if (tracker_.counters().compared == 0)
@@ -388,7 +388,7 @@ DiagnosticVerdict JointTracker::judgeHealth() const
     return { DiagnosticStatus::OK, notJudged(*misfit) };
   }
   const Verdict& confirmed = verdict_.confirmed();
-  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the indicators use these efforts too
+  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the indicators use the same efforts
   {
     return { DiagnosticStatus::OK, notJudged({ confirmed.reason, confirmed.misfit }) };
   }

@@ -36,7 +36,7 @@
 
 namespace hjt
 {
-/// Zero of a robot's telemetry time, which is the stamp of the first row; also checks whether stamps are of one clock.
+/// Zero of the time of a robot's telemetry: the stamp of the first row. Also checks whether stamps are of one clock.
 class TelemetryClock
 {
 public:
@@ -45,7 +45,7 @@ public:
     TAKEN,
     FIRST,    ///< the first row, which sets the zero of time
     MOVED,    ///< the clock of the robot or of this machine has been set; this row sets a new zero of time
-    REFUSED,  ///< far from the clock of the preceding rows; a second such row in succession counts as MOVED
+    REFUSED,  ///< row whose stamp is far from the clock of the rows before; the second of two such rows is MOVED
   };
 
   Row take(Stamp stamp, Stamp received)
@@ -91,7 +91,7 @@ struct TelemetryStream
   TelemetryClock clock;
   StreamTiming timing;
   Stamp last_received{};               ///< time of reception of the last message [ns]
-  std::uint64_t far_stamps{};          ///< number of messages refused because of their stamps
+  std::uint64_t far_stamps{};          ///< number of messages that were refused because of their stamps
   std::uint64_t clock_changes{};       ///< number of restarts because the clock of the stamps had changed
   std::uint64_t other_temperatures{};  ///< number of temperatures whose frame_id is not a joint
   std::string found_names;             ///< names in the last message that lacks a joint
@@ -151,7 +151,7 @@ public:
   bool takesArmLoad() const { return takes_arm_load_; }
 
   /// Reads the row of this joint from a message. Counts and logs a message without such a row. If the first messages of
-  /// an arm have no efforts for this joint, its current is 0: it is not judged, and the other joints continue.
+  /// an arm have no efforts for this joint, the current is 0: the joint is not judged, and the other joints continue.
   TelemetryStatus read(const sensor_msgs::JointState& message, MotionRow& row);
 
   /// Begins at a new zero of the stream's time. `reset`: whether the earlier rows are discarded.
@@ -167,8 +167,8 @@ public:
 
   Tracker& tracker() { return tracker_; }
 
-  /// Sets the common factor of the friction of the arm's joints, relative to the expected friction [-]. The factor is 1
-  /// if there is none, or if the twin's prediction contains it.
+  /// Sets the common factor of the friction of the arm's joints, relative to the expected friction [-]; 1 without a
+  /// common factor, or if the twin's prediction contains the factor.
   void setArmFriction(double ratio) { arm_friction_ = ratio; }
 
   VerdictWatch& verdict() { return verdict_; }

@@ -205,7 +205,7 @@ void LifePublisher::publish()
     message.grease_used = estimate.grease_used;
     publisher_.publish(message);
   }
-  catch (const std::exception& error)  // a thread must not throw
+  catch (const std::exception& error)  // no exception may leave a thread
   {
     ROS_WARN_STREAM_ONCE("The node cannot forecast the remaining life: " << error.what());
   }

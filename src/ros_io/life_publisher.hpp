@@ -30,7 +30,7 @@ public:
   ~LifePublisher();
 
   /// For the loop: adds the use since the last call, without allocation or lock. Speed of the motor [rad/s], torque at
-  /// the joint [N.m], temperature of the drive [degC]. The assessment is stored if it `supersedes` the stored one.
+  /// the joint [N.m], temperature of the drive [degC]. An assessment is stored if it `supersedes` the stored one.
   void offer(Stamp instant, double motor_velocity, double joint_torque, double temperature,
              const Assessment& assessment) noexcept;
 
@@ -39,7 +39,7 @@ private:
   {
     Stamp until;
     UsageHistory use;
-    Assessment assessment;  // last stored assessment; its state is WAITING without one
+    Assessment assessment;  // last stored assessment; the state WAITING means that none was stored
     std::uint64_t windows;  // number of windows of the assessment; the number falls at a reset
   };
   void readRecord();
@@ -58,7 +58,7 @@ private:
   UsageHistory record_;
   Assessment assessment_;
   std::uint64_t windows_{};
-  double reference_hours_{};  // hours of use when the assessment began to learn its reference
+  double reference_hours_{};  // hours of use when the assessment began to learn the reference
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

@@ -29,7 +29,7 @@ inline ClockKind rosClockKind()
   return ros::Time::isSimTime() ? ClockKind::STEPPED : ClockKind::RUNNING;
 }
 
-/// Requests from the system what section realtime demands. Logs what the system refuses.
+/// Requests from the system the settings of section realtime. Logs each refused request.
 inline RealtimeState requestRealtime(const RealtimeParameters& parameters, TwinLoop& loop)
 {
   RealtimeState state = applyRealtime(parameters, loop.thread());

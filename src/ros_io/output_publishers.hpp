@@ -32,7 +32,7 @@
 
 namespace hjt
 {
-/// Thread that sends the messages which a loop has filled. The loop cannot send, because this allocates and locks.
+/// Thread that sends the messages which a loop has filled. The loop cannot send, because sending allocates and locks.
 class PublisherThread
 {
 public:
@@ -77,7 +77,7 @@ private:
       {
         drain_();
       }
-      catch (const std::exception& error)  // a thread must not throw; it tries again in the next round
+      catch (const std::exception& error)  // no exception may leave a thread; the thread tries again in the next round
       {
         ROS_WARN_STREAM_THROTTLE(60.0, "The node cannot publish messages of the twin: " << error.what());
       }
@@ -150,7 +150,7 @@ private:
   std::atomic<int> subscribers_{ 0 };
   std::atomic<std::uint64_t> computed_{ 0 };
   std::atomic<std::uint64_t> dropped_{ 0 };
-  ros::Publisher publisher_;  // last member, because its callbacks use the other members
+  ros::Publisher publisher_;  // last member, because the publisher's callbacks use the other members
 };
 
 /// All topics of the twin. The loop fills due messages that have subscribers, and a thread sends them.

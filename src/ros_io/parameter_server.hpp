@@ -34,8 +34,8 @@ ParameterMap readParameterServer(const std::string& parameter_namespace);
 /// Writes all parameters to `parameter_namespace`. A section of `map` replaces the section of equal name on the server.
 void writeParameterServer(const std::string& parameter_namespace, const ParameterMap& map);
 
-/// Parameters on the server that the node's own start did not set. They may be those of an earlier launch, because a
-/// server outlives its nodes.
+/// Parameters on the server that the start of this node did not set. Such a parameter may be that of an earlier launch,
+/// because the server outlives its nodes.
 class FoundParameters
 {
 public:

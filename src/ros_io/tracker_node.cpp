@@ -420,7 +420,7 @@ void TrackerNode::lookAtFit()
   }
 }
 
-/// Adds the rows to the ranking of arm types, which checks the type of this arm.
+/// Adds the rows of all joints to the ranking of arm types, which checks whether the arm has the configured type.
 void TrackerNode::watchArm(const std::vector<MotionRow>& rows)
 {
   if (!arm_)

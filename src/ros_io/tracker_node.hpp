@@ -23,8 +23,8 @@
 
 namespace hjt
 {
-/// Live twins beside a robot: of one joint, or of all joints of an arm. The motion of the arm gives the loads. Each
-/// message is read once for all joints.
+/// Live twins beside a robot: of one joint, or of all joints of an arm. With an arm, the motion of the arm gives the
+/// loads. Each message is read once for all joints.
 class TrackerNode
 {
 public:
@@ -36,7 +36,7 @@ public:
     ArmDescription description;
     std::vector<Parameters> joints;
     std::vector<SoundJoint> sound;        ///< reference of each joint
-    bool is_identified{};                 ///< whether the parameters contain the identified friction of this arm
+    bool is_identified{};                 ///< whether the parameters contain friction that was identified on this arm
     std::string name;                     ///< name of the arm, for the check of the arm's type
     ArmWatch::MakeCandidates candidates;  ///< candidates for the check of the arm's type; null: no check
     bool unit_is_given{};                 ///< whether the user has given the unit of the efforts

@@ -160,7 +160,7 @@ public:
     }
     catch (const Stopped&)
     {
-      // The call ends, because Python has raised an exception. `finish` throws it.
+      // The call ends, because Python has raised an exception. `finish` throws this exception.
     }
     warnPython(watch.finish());
     recorder_.emplace(arm_, *moving_);

@@ -108,7 +108,7 @@ public:
     table.take();
   }
 
-  /// Columns of the argument `name`; null if the argument names a file. The columns then have the argument's name.
+  /// Columns in the argument `name`; null if the argument names a file.
   py::object columns(const char* name) const
   {
     const py::object given = (*this)[name];
@@ -179,7 +179,7 @@ private:
   py::dict values_;
 };
 
-/// Connects a library function to Python: Ctrl-C and exceptions of `progress` end it, its notices become warnings.
+/// Connects a library function to Python: Ctrl-C and exceptions of `progress` end it. Notices become warnings.
 class PythonWatch
 {
 public:
@@ -301,8 +301,8 @@ inline void requireColumns(const py::object& columns, const std::string& what)
   }
 }
 
-/// A column of a mapping of arrays or of a structured array, empty if it is missing. Its shape is (rows,) or, for an
-/// arm, (rows, joints).
+/// A column of a mapping of arrays or of a structured array; empty if the column is missing. The shape is (rows,) or,
+/// for an arm, (rows, joints).
 class MotionColumn
 {
 public:
@@ -384,7 +384,7 @@ Answer call(const Given& given, Options& options, const Function& function, cons
     {
       throw;
     }
-    // Notices before the error may explain it.
+    // Notices from before the error may explain the error.
     throw InputError(error.what() + ("\n" + joined(notices, "\n")));
   }
 }

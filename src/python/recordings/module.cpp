@@ -90,7 +90,7 @@ void takeRecording(const Given& given, Options& options)
   }
 }
 
-/// Reads options and recordings. Option `at_hand`: for each recording its columns by name, arrays of shape (rows,).
+/// Reads options and recordings. `at_hand` has the columns of each recording by name, as arrays of shape (rows,).
 template <class Options>
 void takeSignals(const Given& given, Options& options)
 {
@@ -178,7 +178,7 @@ void define(py::module& module, const char* name, const char* text, void (*take)
   listOptions<Options>(module, name);
 }
 
-/// Defines a function whose result becomes a document through its report.
+/// Defines a function of the module, whose result becomes a document by way of its report.
 template <class Options, class Result>
 void define(py::module& module, const char* name, const char* text, void (*take)(const Given&, Options&),
             Result (*function)(const Options&))

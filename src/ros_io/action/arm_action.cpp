@@ -37,13 +37,13 @@ constexpr double PATIENCE = 0.6;       // time after the end of the motion withi
 constexpr double LOOK_PERIOD = 0.01;  // time between two checks of the report [s]
 constexpr int LOOKS_A_FEEDBACK = 5;
 
-/// Sets a tolerance as JointTolerance.msg defines it: 0 keeps the default, a negative value means no tolerance.
+/// Sets a tolerance by the rule of JointTolerance.msg: 0 keeps the default, a negative value permits any deviation.
 void take(double given, double& tolerance)
 {
   tolerance = given < 0.0 ? HUGE_VAL : given > 0.0 ? given : tolerance;
 }
 
-/// Reads tolerances of joints, except those of accelerations. @returns the error; empty if the tolerances are valid.
+/// Reads tolerances of joints, except of accelerations. @returns the error; empty if the tolerances are valid.
 std::string takeTolerances(const std::vector<control_msgs::JointTolerance>& given, const char* what,
                            const ArmDescription& arm, std::vector<JointTolerance>& tolerances)
 {
