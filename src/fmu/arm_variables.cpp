@@ -152,7 +152,7 @@ void addArmInputs(const ArmDescription& arm, std::vector<FmuVariable>& all)
       { -WRENCH, WRENCH });
   add("wrench_moment", "N.m", "external moment on the tip, in the frame of the base", { 0.0, 0.0, 0.0 },
       { -WRENCH, WRENCH });
-  add("payload_mass", "kg", "mass of the payload at the tip; the controller knows it", { arm.payload.mass },
+  add("payload_mass", "kg", "mass of the payload at the tip; the controller knows this mass", { arm.payload.mass },
       hjt::PAYLOAD_MASS);
   add("payload_centre", "m", "centre of mass of the payload in the frame of the tip",
       { arm.payload.centre.begin(), arm.payload.centre.end() }, { -100.0, 100.0 });
@@ -171,7 +171,7 @@ void addArmOutputs(std::size_t joints, std::vector<FmuVariable>& all)
   add("tool_orientation", "-", "true orientation of the tip in the frame of the base, unit quaternion x, y, z, w", 4,
       Type::FLOAT64);
   add("tool_error", "m", "distance of the tool from its position at the set points", 1, Type::FLOAT64);
-  add("protective_stop", "-", "0: no protective stop; otherwise number of the joint that caused it, base = 1", 1,
+  add("protective_stop", "-", "0: no protective stop; otherwise number of the joint that caused the stop, base = 1", 1,
       Type::INT32);
 }
 

@@ -146,7 +146,7 @@ void addInputs(const Parameters& parameters, const std::string& prefix, std::vec
       parameters.input.temperature, { MIN_TEMPERATURE, MAX_TEMPERATURE });
   all.push_back({ prefix + "brake",
                   "-",
-                  "true engages the brake; it acts after brake.delay",
+                  "true engages the brake; the brake acts after brake.delay",
                   Causality::INPUT,
                   Type::BOOLEAN,
                   { { parameters.brake.engaged_at_start ? 1.0 : 0.0 } } });
@@ -219,7 +219,7 @@ std::vector<ScalarOutput> driveOutputs()
     { "grease_temperature", "degC", "temperature of the grease, which determines the friction", F,
       [](T, O o) { return o.temperature; } },
     { "housing_temperature", "degC", "temperature of the housing", F, [](T, O o) { return o.housing_temperature; } },
-    { "brake_engaged", "-", "whether the brake holds the motor, within the brake's play", Type::BOOLEAN,
+    { "brake_engaged", "-", "whether the brake holds the motor within brake.play", Type::BOOLEAN,
       [](T, O o) { return o.brake_engaged ? 1.0 : 0.0; } },
     { "converged", "-", "false: the solver found no equilibrium, and the twin keeps its last converged state",
       Type::BOOLEAN, [](T, O o) { return o.converged ? 1.0 : 0.0; } },

@@ -69,8 +69,8 @@ void warnOf(const TwinCounters& counters)
 {
   warn(counters.input.not_finite, "inputs were refused because they were not finite");
   warn(counters.input.overflow, "inputs were dropped because the queue was full");
-  warn(counters.torque_clamped, "steps had a motor torque command beyond motor.torque_limit; it was clamped");
-  warn(counters.load_clamped, "steps had a load torque beyond output.load_torque_limit; it was clamped");
+  warn(counters.torque_clamped, "steps had a motor torque command beyond motor.torque_limit; the command was clamped");
+  warn(counters.load_clamped, "steps had a load torque beyond output.load_torque_limit; the load was clamped");
   warn(counters.overloads, "steps had a torque at the joint beyond output.torque_limit");
   warn(counters.speed_limited, "steps were at motor.speed_limit, where the drive reduces its torque");
   warn(counters.command_timeouts, "times the motor torque command timed out (input.command_timeout) and became zero");

@@ -20,7 +20,7 @@ void visitMotor(P& p, Visitor& visit)
   visit("motor.coulomb_torque", "N.m", p.motor.coulomb_torque, Range{ 0.0, 1e3 },
         ofOthers("Coulomb friction at the motor shaft, in addition to the friction of bearing, outer race and flanks"));
   visit("motor.stribeck_torque", "N.m", p.motor.stribeck_torque, Range{ 0.0, 1e3 },
-        ofOthers("friction at the motor shaft at standstill, in addition to motor.coulomb_torque and the bearing's"));
+        ofOthers("friction at the motor shaft at standstill, added to motor.coulomb_torque and bearing friction"));
   visit("motor.stribeck_velocity", "rad/s", p.motor.stribeck_velocity, Range{ 1e-6, 1e4 },
         ofOthers("motor speed at which motor.stribeck_torque has decayed to 1/e"));
   visit("motor.presliding_angle", "rad", p.motor.presliding_angle, Range{ 0.0, 1.0 },
@@ -176,7 +176,7 @@ template <class P, class Visitor>
 void visitIndicators(P& p, Visitor& visit)
 {
   visit("indicators.sample_rate", "Hz", p.indicators.sample_rate, Range{ 1.0, 1e6 },
-        ofOthers("sample rate of the twin's own indicators; must divide solver.rate"));
+        ofOthers("sample rate of the twin's signals for its indicators; must divide solver.rate"));
   visit("indicators.window_turns", "-", p.indicators.window_turns, Range{ 2.0, 1e5 },
         ofOthers("number of motor turns at steady speed in a window"));
   visit("indicators.window_time", "s", p.indicators.window_time, Range{ 0.1, 1e5 },

@@ -211,7 +211,7 @@ void bindAssessment(py::module& module)
                     "mean severity of the fault `cause`; 0 if the cause is 'none' [-]")
       .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of the severity [-]")
       .def_property_readonly("alternatives", &alternativesOf,
-                             "next likely causes, until all probabilities add up to 90 %: {cause: probability [-]}")
+                             "likely causes after `cause`, until all add up to 90 %: {cause: probability [-]}")
       .def_readonly("largest_score", &Assessment::largest_score,
                     "largest score of the last windows' mean / threshold; a ratio beyond 1 is an alarm [-]")
       .def_property_readonly("evidence", &evidenceOf,

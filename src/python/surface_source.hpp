@@ -18,8 +18,8 @@ namespace hjt
 class SurfaceSourceOf
 {
 public:
-  /// `cache`: directory of surfaces; none: that of the tool. `progress`: None, or Python function that gets the finished
-  /// share 0 ... 1. `builders`: number of twins that are built one after the other and share equal surfaces.
+  /// `cache`: directory of surfaces; none: that of the tool. `progress`: Python function of the finished share 0 ... 1,
+  /// or None. `builders`: number of twins that are built one after the other and share equal surfaces.
   SurfaceSourceOf(const std::optional<std::string>& cache, const py::object& progress, std::size_t builders = 1)
   {
     source_.cache_directory = cache ? *cache : surfaceCacheDirectory();

@@ -233,7 +233,7 @@ int import(const ImportOptions& options)
 void declare(OptionTable& table, ImportOptions& options)
 {
   table.add("csv", options.csv, "the recording").required().type("FILE.csv");
-  table.add("--joint", options.joint, "base, shoulder, elbow, wrist_1 ..., or its number from 0")
+  table.add("--joint", options.joint, "joint: base, shoulder, elbow, wrist_1 ..., or its number from 0")
       .required()
       .check(
           [](const std::string& name)
