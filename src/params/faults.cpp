@@ -126,7 +126,7 @@ std::string placeText(FaultKind kind, const Parameters& parameters)
 
 bool isValid(const Fault& fault, const Parameters& parameters) noexcept
 {
-  // Each of these comparisons is false if severity or onset is NaN.
+  // If the severity or the onset is NaN, its comparisons are false.
   return static_cast<std::size_t>(fault.kind) < FAULT_KINDS && fault.severity >= 0.0 && fault.severity <= 1.0 &&
          fault.place >= firstPlace(fault.kind) && fault.place <= lastPlace(fault.kind, parameters) &&
          fault.onset >= 0.0 && fault.onset <= LATEST_ONSET;

@@ -172,7 +172,7 @@ private:
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // blocks grow until a block lasts this long
+constexpr std::chrono::milliseconds BLOCK_TIME{ 25 };  // a shorter block doubles the steps of the next block
 constexpr py::ssize_t FIRST_BLOCK = 16384;             // steps of the first block, summed over all twins
 constexpr py::ssize_t PORTION = 32;  // least number of steps that a thread takes at once (about 10 us on the surface)
 

@@ -23,10 +23,10 @@ constexpr double TEXT_HEIGHT = 1.8e-3;  // height of a letter [m]
 constexpr double ARROW_WIDTH = 0.2e-3;  // width of an arrow's shaft [m]
 constexpr double ARROW_HEAD = 0.7e-3;   // length and width of an arrow's head [m]
 constexpr double MIN_ARROW = 0.2e-3;    // least length of a drawn arrow [m]
-constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at its tip, in pitches
-constexpr double ROOT_SHARE = 0.28;     // half width of a drawn tooth at its root, in pitches
+constexpr double TIP_SHARE = 0.12;      // half width of a drawn tooth at the tip [pitches]
+constexpr double ROOT_SHARE = 0.28;     // half width of a drawn tooth at the root [pitches]
 constexpr double RING_HEIGHTS = 2.0;    // radial height of the circular spline's ring outside the roots [tooth heights]
-constexpr double ROOT_CLEARANCE = 1.2;  // depth of the circular spline's spaces, in tooth heights
+constexpr double ROOT_CLEARANCE = 1.2;  // depth of the circular spline's spaces [tooth heights]
 constexpr int ELLIPSE_POINTS = 180;
 
 std_msgs::ColorRGBA color(float red, float green, float blue)

@@ -388,7 +388,7 @@ DiagnosticVerdict JointTracker::judgeHealth() const
     return { DiagnosticStatus::OK, notJudged(*misfit) };
   }
   const Verdict& confirmed = verdict_.confirmed();
-  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the indicators use the same efforts
+  if (!confirmed.fits && confirmed.reason == Reason::EFFORT_UNIT)  // the indicators use the efforts too
   {
     return { DiagnosticStatus::OK, notJudged({ confirmed.reason, confirmed.misfit }) };
   }

@@ -58,7 +58,7 @@ private:
   UsageHistory record_;
   Assessment assessment_;
   std::uint64_t windows_{};
-  double reference_hours_{};  // hours of use when the assessment began to learn the reference
+  double reference_hours_{};  // use of the drive when the assessment began to learn the reference [h]
   Stamp until_{};
   LifeEstimator estimator_;
   ros::Publisher publisher_;

@@ -43,7 +43,7 @@ private:
   double value_{};
   double sum_{};  // integral over the time from begin_ to from_ [N.m.s]
   Stamp begin_{};
-  Stamp from_{};  // time in the step from which the present value acts
+  Stamp from_{};  // time in the step from which the present value acts [ns]
 };
 
 /// Parts of a twin, and the actions of a step.
@@ -89,12 +89,12 @@ struct Twin::Impl
   double arm_torque{};   // torque of a coupled arm, see Twin::coupleArm [N.m]
   double temperature{};  // received or configured temperature of the drive or its surroundings [degC]
   std::optional<DriveHeat> heat;
-  Stamp heat_stamp{};    // time up to which `heat` contains the losses
+  Stamp heat_stamp{};    // time up to which `heat` contains the losses [ns]
   double heat_booked{};  // dissipated energy that `heat` contains [J]
   double copper_heat{};  // copper losses that `heat` does not yet contain [J]
   bool brake_engaged{};
   bool brake_commanded{};
-  Stamp brake_moves{};  // time at which the brake executes its command
+  Stamp brake_moves{};  // time at which the brake executes the last command [ns]
   bool converged{ true };
   JointSensors sensors;
   HealthMonitor monitor;

@@ -32,7 +32,7 @@ enum class FaultKind : std::uint8_t
   BEARING_CAGE,
   COUNT  ///< number of kinds of faults
 };
-constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< kinds of faults
+constexpr std::size_t FAULT_KINDS = static_cast<std::size_t>(FaultKind::COUNT);  ///< number of kinds of faults
 
 /// Value of Fault::place for a fault of the whole part, not of one of its teeth, segments, lobes or balls.
 constexpr int WHOLE_MEMBER = -1;
@@ -155,7 +155,7 @@ std::string faultNames();                                      ///< names of all
 
 /// Word for a place, for example "tooth" or "segment of the rim"; "-" for MEMBER.
 const char* placeName(FaultPlace place) noexcept;
-/// Number of teeth, segments, lobes or balls in the gear that `place` counts; 0 for MEMBER.
+/// Number of parts in the gear that `place` counts; 0 for MEMBER.
 int placesOf(FaultPlace place, const Parameters& parameters) noexcept;
 int firstPlace(FaultKind kind) noexcept;  ///< least place that the kind of fault allows: WHOLE_MEMBER or 0
 /// Largest place that the kind of fault allows in the gear.

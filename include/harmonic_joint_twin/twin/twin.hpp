@@ -20,22 +20,22 @@
 
 namespace hjt
 {
-/// State of the joint at one simulated instant. Angles [rad], speeds [rad/s], torques [N.m], energies [J].
+/// State of the joint at one simulated instant.
 struct JointOutputs
 {
   Stamp stamp{};                 ///< simulated instant [ns]
-  double motor_angle{};          ///< true angle of the wave generator
-  double motor_velocity{};       ///< true speed of the wave generator
-  double output_angle{};         ///< true angle of the circular spline
-  double output_velocity{};      ///< true speed of the circular spline
-  double motor_torque{};         ///< torque of the motor after timeout, limits and lag of the current loop
-  double load_torque{};          ///< external torque at the output, > 0 resists positive motion
+  double motor_angle{};          ///< true angle of the wave generator [rad]
+  double motor_velocity{};       ///< true speed of the wave generator [rad/s]
+  double output_angle{};         ///< true angle of the circular spline [rad]
+  double output_velocity{};      ///< true speed of the circular spline [rad/s]
+  double motor_torque{};         ///< torque of the motor after timeout, limits and lag of the current loop [N.m]
+  double load_torque{};          ///< external torque at the output, > 0 resists positive motion [N.m]
   double temperature{};          ///< temperature of the grease, which determines the friction [degC]
   double housing_temperature{};  ///< temperature of the housing [degC]
-  /// torque of the wave generator on the flexspline: the motor's torque minus friction and inertia
+  /// torque of the wave generator on the flexspline: motor torque - friction - inertia torque [N.m]
   double wave_generator_torque{};
-  double joint_torque{};         ///< torque of the mesh on the circular spline
-  double friction_torque{};      ///< torque at the motor shaft that has the power of all friction, >= 0
+  double joint_torque{};         ///< torque of the mesh on the circular spline [N.m]
+  double friction_torque{};      ///< torque at the motor shaft that has the power of all friction, >= 0 [N.m]
   double torsional_stiffness{};  ///< local torsional stiffness with the wave generator locked [N.m/rad]
   double energy_residual{};      ///< supplied - stored - dissipated - released energy since the last reset [J]
   double dissipated_energy{};    ///< energy that all friction dissipated since the last reset [J]

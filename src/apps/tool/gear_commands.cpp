@@ -37,7 +37,7 @@ struct GearOptions : CommonOptions
 struct Figure
 {
   std::string name;
-  double catalogue;  // value in the catalogue; 0 if the catalogue has none
+  double catalogue;  // value of the figure in the catalogue, in `unit`; 0 if the catalogue has none
   double gear;
   std::string unit;
 };

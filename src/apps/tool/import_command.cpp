@@ -162,7 +162,7 @@ double countLines(const std::string& path)
   return static_cast<double>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
-/// Writes all rows to the bag. @returns the number of rows. After an error the bag has all rows before it.
+/// Writes all rows to the bag. @returns the number of rows. After an error the bag is readable, with the rows so far.
 std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, double ratio,
                          NumberTable<ROW_COLUMNS>& table, BagWriter& bag)
 {

@@ -106,7 +106,7 @@ struct FatigueRow
   StressCycle cycle;
   double equivalent{};   ///< amplitude with zero mean stress that damages the notch as `cycle` does [Pa]
   double cycles{};       ///< number of cycles that half of all flexsplines endure; infinite below the endurance limit
-  double cycles_weak{};  ///< number of cycles that 99 % of all flexsplines endure
+  double cycles_weak{};  ///< number of cycles that 99 % of all flexsplines endure [-]
   double allowed{};      ///< number of cycles that the catalogue allows; infinite up to the repeated peak torque
 };
 const std::vector<Column<FatigueRow>> FATIGUE_COLUMNS{

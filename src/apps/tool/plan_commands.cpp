@@ -134,7 +134,7 @@ std::string shortTime(double seconds)
 {
   constexpr double MINUTE = 60.0;
   constexpr double HOUR = 3600.0;
-  constexpr double MANY = 100.0;  // a number above this is printed in the next larger unit
+  constexpr double MANY = 100.0;  // a time of 100 units or more is printed in the next larger unit
   return seconds < MANY          ? rounded(seconds) + " s" :
          seconds < MANY * MINUTE ? rounded(seconds / MINUTE) + " min" :
                                    rounded(seconds / HOUR) + " h";

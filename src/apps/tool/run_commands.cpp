@@ -378,7 +378,7 @@ BagInputs requireInputs(const rosbag::Bag& bag, const ReplayOptions& options, co
   return found;
 }
 
-/// Runs a twin along a recording. Each message of the recording is copied after all simulated messages up to its time.
+/// Runs a twin along a recording. Copies each recorded message after all simulated messages of earlier or equal time.
 class Replay
 {
 public:

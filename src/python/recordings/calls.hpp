@@ -179,7 +179,7 @@ private:
   py::dict values_;
 };
 
-/// Connects a library function to Python: Ctrl-C and exceptions of `progress` end it. Notices become warnings.
+/// Connects a library function to Python. Ctrl-C and exceptions of `progress` end the call; notices become warnings.
 class PythonWatch
 {
 public:
