@@ -84,7 +84,7 @@ bool waitForShutdownOrNewMaster()
 {
   constexpr int LOOKS = 100;  // number of polls of ros::ok() between two questions to the master
   constexpr int MISSES =
-      2;  // successive negative answers that show a new master; a master that starts or ends may give only one
+      2;  // negative answers in succession that show a new master; a master that starts or ends may give only one
   const ros::WallDuration period(0.05);
   int misses = 0;
   for (int look = 1; ros::ok() && misses < MISSES; ++look)

@@ -144,7 +144,7 @@ bool DrivePart::marks(std::size_t reference, const Twin& twin) const
   return (*variables_)[reference].is_array ? !teeth_known_ : scalar(reference).watches && !twin.watchesSignals();
 }
 
-/// Reads the outputs of the teeth. On the response surface the twin solves a separate ring for them.
+/// Reads the outputs of the teeth. On the response surface the twin solves a separate ring for these outputs.
 bool DrivePart::readTeeth(Twin& twin, Values& values)
 {
   if (teeth_known_)

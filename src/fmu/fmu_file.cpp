@@ -248,7 +248,7 @@ public:
   {
     const auto offset = static_cast<std::uint32_t>(files_.size());
     const auto size = static_cast<std::uint32_t>(bytes.size());
-    // These fields say: version 1.0, no flags, uncompressed, time 1980-01-01 00:00.
+    // The fields of `common` say: version 1.0, no flags, uncompressed, time 1980-01-01 00:00.
     std::string common;
     append(common,
            { { 10, 2 }, { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0x21, 2 }, { crc(bytes), 4 }, { size, 4 }, { size, 4 } });

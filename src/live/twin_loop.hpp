@@ -279,7 +279,7 @@ private:
   const Stamp step_length_;  ///< length of a step of the twin [ns]
   const bool wait_for_first_input_;
   std::size_t waiting_{};  ///< number of inputs of earlier cycles that wait for the start of the twin
-  Stamp released_{};       ///< earliest time of the clock at which the instants of this cycle were due [ns]
+  Stamp released_{};       ///< earliest time of the clock at which the instants of the present cycle were due [ns]
   Stamp start_stamp_{};    ///< first instant since the last start or reset [ns]
   std::chrono::steady_clock::time_point start_time_;
   LoopStatus status_;

@@ -44,7 +44,7 @@ std::function<void(double)> showProgress(const std::string& what);
 /// callback ends the function at once.
 struct Watch
 {
-  /// Called when a step with this name begins; returns the function that receives the step's progress, 0 ... 1.
+  /// Called with the name of a step when the step begins. Returns the function that receives its progress, 0 ... 1.
   std::function<std::function<void(double)>(const std::string&)> progress{ [](const std::string&)
                                                                            { return [](double) {}; } };
   /// Called at every row and between steps. If the callback returns true, the function closes its files and ends.

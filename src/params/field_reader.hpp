@@ -172,7 +172,7 @@ private:
     std::size_t distance = std::max<std::size_t>(2, withoutSection(unknown).size() / 3) + 1;
     for (const std::string& key : known)
     {
-      // A right name in a wrong section counts as one edit of the key.
+      // A key with a right name in a wrong section counts as one edit away from the right key.
       const bool other_section = withoutSection(key) == withoutSection(unknown);
       const std::size_t edits = other_section ? 1 : editDistance(unknown, key);
       if (edits < distance)
@@ -301,7 +301,7 @@ private:
   std::vector<std::string> errors_;
 };
 
-/// @throws ParameterError with all errors, one per line.
+/// @throws ParameterError with all `errors`, one per line, unless `errors` is empty.
 inline void throwIfAny(const std::vector<std::string>& errors)
 {
   if (!errors.empty())

@@ -13,7 +13,7 @@ inline Parameters withoutWeight(Parameters parameters)
   return parameters;
 }
 
-/// Drive whose temperature is the given one, not one computed from the losses.
+/// Drive that keeps its given temperature, because the losses do not warm it.
 inline Parameters withoutHeat(Parameters parameters)
 {
   parameters.thermal.model = ThermalModel::NONE;

@@ -39,7 +39,7 @@ inline py::dict stepCounters(const TwinCounters& counters)
   return named;
 }
 
-/// Error: the solver found no equilibrium. In Python a RuntimeError.
+/// Error that the solver found no equilibrium; a RuntimeError in Python.
 class NotConverged : public std::runtime_error
 {
 public:

@@ -96,7 +96,7 @@ void visitValues(const Parameters& parameters, const Take& take)
   visitFields(parameters,
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
-                // Arguments after the key: unit, value, range, meaning for a number, else value and meaning.
+                // Arguments after the key: unit, value, range and meaning of a number; value and meaning of others.
                 if constexpr (sizeof...(rest) == 0)
                 {
                   take(key, first);

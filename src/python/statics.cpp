@@ -19,7 +19,7 @@
 
 namespace hjt
 {
-/// One position of the wave generator in a quasi-static turn.
+/// Values at one position of the wave generator in a quasi-static turn.
 struct TurnValues
 {
   double wave_generator_angle;

@@ -158,8 +158,8 @@ public:
   void start(bool reset);
 
   void pushLoad(double time, double torque) { tracker_.pushLoad(time, torque); }
-  void push(const MotionRow& row);        ///< compares the row of a single joint
-  void compare(const MotionSample& row);  ///< compares the row of a joint of an arm
+  void push(const MotionRow& row);        ///< compares the row of a single joint with the twin
+  void compare(const MotionSample& row);  ///< compares the row of a joint of an arm with the twin
 
   /// Sets the misfit of the telemetry. Without a misfit the telemetry fits, or the check is not yet `settled`.
   void setMisfit(const Misfit& misfit, bool settled);

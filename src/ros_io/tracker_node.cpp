@@ -371,7 +371,7 @@ void TrackerNode::missTelemetry()
                                                 "; select this topic with measured:="));
 }
 
-/// Forgets all rows, because the next rows have stamps of another clock.
+/// Forgets all rows, because the next rows have stamps of another clock than the rows before.
 void TrackerNode::restart()
 {
   resetFit();

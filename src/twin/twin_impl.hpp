@@ -79,7 +79,7 @@ struct Twin::Impl
   // Present instant, or the stamp of the reset. An input with an earlier stamp is late.
   Stamp simulated_until{};
   InputQueue queue;
-  std::array<Stamp, INPUT_KINDS> in_force_since{};  // for each kind of input the stamp of the one that acts
+  std::array<Stamp, INPUT_KINDS> in_force_since{};  // stamp of the acting input of each kind
   TwinCounters counters;
   HeldTorque motor_torque;  // commanded torque, clamped to motor.torque_limit
   bool command_clamped{};   // whether motor.torque_limit reduced the command

@@ -199,7 +199,7 @@ constexpr double MAX_TEMPERATURE = 150.0;
 enum class InputMode
 {
   COMMANDS,  ///< commanded torques drive the twin, without a robot
-  TORQUE,    ///< the measured current of a robot drives the twin, and measured angles do not correct it
+  TORQUE,    ///< the measured current of a robot drives the twin, and measured angles do not correct the twin
   MOTION,    ///< the twin predicts torque and current of a sound joint from the measured motion
   OBSERVER   ///< the measured current drives the twin, and the measured angles correct its states
 };

@@ -26,7 +26,7 @@ Json toJson(const Parameters& parameters)
               [&](const std::string& key, const auto& first, const auto& second, const auto&... rest)
               {
                 Json& entry = json[key];
-                // Arguments after the key: unit, value, range, meaning for a number, else value and meaning.
+                // Arguments after the key: unit, value, range and meaning of a number; value and meaning of others.
                 if constexpr (std::is_enum_v<std::decay_t<decltype(first)>>)
                 {
                   for (const auto& [name, choice] : choiceNames(first))

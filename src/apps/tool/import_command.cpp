@@ -198,7 +198,7 @@ std::uint64_t importRows(const ImportOptions& options, const UrJoint& joint, dou
   {
     if (!bag.isOpen())
     {
-      throw;  // an error in writing the output
+      throw;  // the program could not write the output
     }
     bag.close();
     throw InputError(std::string(error.what()) + (rows == 0 ? "; nothing was written" :

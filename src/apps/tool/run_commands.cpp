@@ -385,7 +385,7 @@ public:
   Replay(const rosbag::Bag& bag, Twin& twin, const std::vector<TwinInput>& inputs, const ReplayOptions& options)
     : view_(bag), twin_(twin), inputs_(inputs), writer_(options.out), recorder_(twin, options.joint_namespace, writer_)
   {
-    // The last input may have a stamp after the last time of recording, but the recording ends there.
+    // The replay ends at the last time of recording, even if the stamp of the last input is later.
     end_ = fromRosTime(view_.getEndTime());
     begin_ = twin.stamp();
   }
@@ -465,7 +465,7 @@ int replay(const ReplayOptions& options)
   {
     if (!run.isOpen())
     {
-      throw;  // an error in writing the output
+      throw;  // the program could not write the output
     }
     run.close();
     throw InputError(options.bag + ": replay stopped: " + error.what() + "; " + options.out +

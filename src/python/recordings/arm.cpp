@@ -325,7 +325,7 @@ public:
   }
 
 private:
-  static constexpr double MAX_WRENCH = 1000.0;  // largest component of a force or moment, as on ~wrench [N], [N.m]
+  static constexpr double MAX_WRENCH = 1000.0;  // largest component of force and moment, as for ~wrench [N], [N.m]
   static constexpr double LONGEST = 1e6;        // longest duration of a run [s]
 
   static void requirePayload(const Payload& payload)
