@@ -54,7 +54,7 @@ hjt::DriveMarkers readMarkers(const ros::NodeHandle& node)
   const std::string twin = ros::names::resolve(readText(node, "twin", "the name of the twin's node"));
   const hjt::Parameters parameters = hjt::parseParameters(hjt::readParameterServer(twin));
   return { parameters,
-           { readText(node, "frame", "a frame to draw in"), readPositive(node, "exaggeration", "-"),
+           { readText(node, "frame", "the frame of the markers"), readPositive(node, "exaggeration", "-"),
              readPositive(node, "arrow_length", "m/N"), readPositive(node, "full_force", "N") } };
 }
 }  // namespace

@@ -31,9 +31,9 @@ void visitArm(Arm& arm, Fields& fields)
     fields(place + "speed_limit", "rad/s", joint.speed_limit, ANY, "largest speed of the joint; 0: no limit");
     fields(place + "feedback_limit", "N.m", joint.feedback_limit, ANY,
            "largest torque of the feedback at the joint; 0: no limit");
-    fields(place + "delay", "s", joint.delay, ANY, "time from the joint's set point until its controller acts on it");
-    fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed of the joint / error of its angle");
-    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque at the joint / error of its speed");
+    fields(place + "delay", "s", joint.delay, ANY, "time from a set point to the reaction of the joint's controller");
+    fields(place + "position", "1/s", joint.gains->position, ANY, "wanted speed / angle error of the joint");
+    fields(place + "speed", "N.m.s/rad", joint.gains->speed, ANY, "torque / speed error of the joint");
     fields(place + "integral_time", "s", joint.gains->integral_time, ANY, "integral time of the speed controller");
     fields(place + "coulomb", "N.m", joint.gains->coulomb, ANY, "Coulomb friction in the feedforward");
     fields(place + "viscous", "N.m.s/rad", joint.gains->viscous, ANY,
@@ -192,9 +192,9 @@ void addArmParameters(const ArmDescription& arm, std::vector<FmuVariable>& all)
                   { { 1.0 } } });
   add("gravity", "m/s^2", "acceleration of gravity in the frame of the base",
       { arm.gravity.begin(), arm.gravity.end() }, { -100.0, 100.0 });
-  add("controller.position", "1/s", "wanted speed of a joint / error of its angle", gainsOf(arm, &JointGains::position),
+  add("controller.position", "1/s", "wanted speed / angle error of a joint", gainsOf(arm, &JointGains::position),
       { 0.0, 1e3 });
-  add("controller.speed", "N.m.s/rad", "torque at a joint / error of its speed", gainsOf(arm, &JointGains::speed),
+  add("controller.speed", "N.m.s/rad", "torque / speed error of a joint", gainsOf(arm, &JointGains::speed),
       { 0.0, 1e6 });
   add("controller.integral_time", "s", "integral time of the speed controller",
       gainsOf(arm, &JointGains::integral_time), { 1e-3, 1e6 });

@@ -133,8 +133,8 @@ public:
       (*this)(key + "severity", "-", fault.severity, Range{ 0.0, 1.0 },
               "severity, 0 ... 1; section fault_scale says what 1 means");
       (*this)(key + "place", "-", fault.place, Range{ WHOLE_MEMBER, 4000 },
-              "tooth, segment, lobe or ball; -1: the whole part");
-      (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "delay after the start");
+              "number of the tooth, segment, lobe or ball; -1: the whole part");
+      (*this)(key + "onset", "s", fault.onset, Range{ 0.0, 1e9 }, "delay of the fault after the start");
       faults.push_back(fault);
     }
   }

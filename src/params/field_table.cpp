@@ -91,8 +91,8 @@ std::string describeParameters(const Parameters& parameters)
     maker(key + "kind", std::string(describe(fault.kind).name), "kind of the fault");
     maker(key + "severity", "-", fault.severity, {}, "severity");
     maker(key + "place", placeName(describe(fault.kind).place), fault.place, {},
-          "tooth, segment, lobe or ball; -1: the whole part");
-    maker(key + "onset", "s", fault.onset, {}, "delay after the start");
+          "number of the tooth, segment, lobe or ball; -1: the whole part");
+    maker(key + "onset", "s", fault.onset, {}, "delay of the fault after the start");
   }
   std::string text;
   for (const FieldRow& row : maker.rows)

@@ -107,7 +107,7 @@ void bindReport(py::module& module)
           "sum of mesh forces at each lobe of the wave generator [N]: tuple of 2")
       .def_property_readonly(
           "lobe_asymmetry", [](const HealthReport& self) { return self.lobes.asymmetry; },
-          "(first - second) / (first + second), from lobe_mesh_force; 0 without load [-]")
+          "(first - second) / (first + second) of lobe_mesh_force; 0 without load [-]")
       .def_readonly(
           "mesh_force_error", &HealthReport::mesh_force_error,
           "expected rms error of a loaded tooth's force at this speed and load, because the ring has no inertia [N]")

@@ -173,7 +173,7 @@ void bindTracking(py::module& module)
            "Returns a structured array of shape (compared rows,) with dtype COMPARISON_DTYPE. Impossible rows are "
            "ignored and counted. Raises InputError.")
       .def(
-          "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Prepares for another recording.")
+          "reset", [](TrackerObject& self) { self.tracker().reset(); }, "Prepares the tracker for another recording.")
       .def_property_readonly("counters", &countersOf, "counts of events, by name: dict of str to int")
       .def_property_readonly(
           "lag", [](TrackerObject& self) { return self.tracker().lag(); },

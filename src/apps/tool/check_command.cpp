@@ -87,7 +87,7 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
                                              "the messages name joints, but their position is empty; ") +
                    "the angles have to be recorded as position, the motors' currents as effort" :
                "none for the joints of the arm; the messages name the joints " + joined(contents.usable) +
-                   ". The file of the arm must name its joints like this (docs/arm.md)";
+                   ". The arm's file must have the joint names of the messages (docs/arm.md)";
   }
   const EffortFit& effort = arm.effort;
   const std::string factor = roundedText(effort.factor.value, 3);

@@ -224,7 +224,7 @@ int age(const AgeOptions& options)
     { "flaw_depth", "crack at the tooth root", life.age.flaw_depth, "m" },
     { "fatigue", "fatigue of the flexspline (1: broken)",
       *std::max_element(life.age.fatigue.begin(), life.age.fatigue.end()) },
-    { "", "share of bearings that fail within these hours", bearing.failedBy(life.age.bearing_turns) },
+    { "", "share of bearings that fail within the hours of use", bearing.failedBy(life.age.bearing_turns) },
     { "phases", "", Table(PHASE_COLUMNS, phases).rows() },
   };
   if (options.check)

@@ -7,7 +7,7 @@ namespace hjt
 {
 std::shared_ptr<void> offerArmAction(ros::NodeHandle& /*node*/, ArmNode& /*arm*/)
 {
-  ROS_INFO_STREAM("No action FollowJointTrajectory: control_msgs or actionlib was not found when this was built");
+  ROS_INFO_STREAM("No action FollowJointTrajectory: control_msgs or actionlib was not found at build time");
   return {};
 }
 }  // namespace hjt
