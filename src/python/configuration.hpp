@@ -14,7 +14,7 @@ constexpr const char* ORIGIN = "Python";  ///< origin of values from Python in e
 /// Adds keys and values to the map without checks of range. @throws ParameterError if a value has no valid type.
 void put(const py::dict& values, ParameterMap& map);
 
-/// Reads an overlay into the map without checks of range. `what`: a dict, or a file, as named or in `directory`.
+/// Reads an overlay into the map without checks of range. `what`: dict, or name of a file, also one in `directory`.
 /// @throws ParameterError, Python's TypeError.
 void readOverlay(const py::handle& what, const std::string& directory, ParameterMap& map);
 
@@ -35,7 +35,7 @@ public:
   Configuration frozen() const;                       ///< copy that cannot be changed, for a twin
   bool operator==(const Configuration& other) const;  ///< whether values and faults are equal
 
-  py::object value(const std::string& key) const;  ///< @throws py::key_error
+  py::object value(const std::string& key) const;  ///< value of a parameter @throws py::key_error
   bool contains(const std::string& key) const;
   std::vector<std::string> keys() const;
   void update(const py::dict& changes);

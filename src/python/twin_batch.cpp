@@ -42,7 +42,7 @@ class ThreadTeam
 public:
   using Task = std::function<void(std::size_t)>;
 
-  /// `threads`: wanted number of threads with the caller's. The system may allow fewer.
+  /// `threads`: wanted number of threads, including the caller's thread. The system may allow fewer threads.
   explicit ThreadTeam(std::size_t threads) : work_(std::make_shared<Work>()), process_(::getpid())
   {
     try
@@ -120,7 +120,7 @@ private:
     std::size_t count{};
     std::size_t portion{};
     std::atomic<std::uint64_t> number{ 0 };
-    std::atomic<std::size_t> busy{ 0 };  // number of threads that work on the task, without the caller's
+    std::atomic<std::size_t> busy{ 0 };  // number of threads that work on the task, except the caller's thread
     std::atomic<bool> ends{ false };
     std::atomic<std::size_t> next{ 0 };
 
@@ -181,7 +181,7 @@ using Twins = std::vector<std::pair<py::object, TwinObject*>>;
 class BatchBuilder
 {
 public:
-  /// `given`: Parameters or a Twin, of which `count` equal twins are made, or a list of them. @throws InputError.
+  /// `given`: Parameters or a Twin for `count` equal twins, or a list of Parameters and Twins. @throws InputError.
   BatchBuilder(const py::object& given, const std::optional<py::ssize_t>& count)
     : alike_(py::isinstance<Configuration>(given) || py::isinstance<TwinObject>(given))
   {

@@ -267,7 +267,7 @@ void JointTracker::look(const ros::WallTime& now)
   logState();
 }
 
-/// Logs that telemetry arrives, and each change of the worst level.
+/// Logs the worst level of comparison and health when telemetry arrives first, and each change of this level.
 void JointTracker::logState()
 {
   if (tracker_.counters().compared == 0)
@@ -293,7 +293,7 @@ bool JointTracker::hasStopped() const
   return toSeconds(fromRosTime(ros::Time::now()) - stream_.last_received) > STOPPED_AFTER;
 }
 
-/// Verdict on the rows. If the solver has failed recently, the level is ERROR and the reason this failure.
+/// Verdict on the rows. If the solver has failed recently, the level is ERROR and the failure is the reason.
 Verdict JointTracker::verdictNow() const
 {
   Verdict verdict = verdict_.now();

@@ -82,7 +82,7 @@ public:
     std::size_t of_first_run{};  ///< number of missing surfaces of `first_run`
   };
 
-  /// Counts the surfaces of a block. Checks runs for PATIENCE and assumes equally many surfaces per run for the rest.
+  /// Counts the surfaces of a block. Checks runs for PATIENCE; the other runs are assumed to need as many per run.
   OfBlock of(const Plan& plan, const Plan::Block& block)
   {
     using Clock = std::chrono::steady_clock;

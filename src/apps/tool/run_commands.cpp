@@ -44,7 +44,7 @@ constexpr Range TIMES{ 0.0, 1e9 };  // range of a stamp [s]
 class TorqueProfile
 {
 public:
-  /// A constant torque from t = 0 [N.m].
+  /// Profile with a constant motor torque [N.m] from t = 0 on.
   static TorqueProfile constant(double motor_torque)
   {
     TorqueProfile profile;
@@ -92,7 +92,7 @@ public:
 
   bool hasLoad() const { return has_load_; }
 
-  /// Sets the load from t = 0 on [N.m].
+  /// Sets the load torque [N.m] from t = 0 on.
   void setLoad(double load_torque)
   {
     has_load_ = true;
@@ -420,7 +420,7 @@ private:
     }
   }
 
-  /// Passes on the inputs that are due at the twin's next instant.
+  /// Gives the twin the recorded inputs that are due at the twin's next instant.
   void feed()
   {
     const Stamp instant = twin_.stamp() + twin_.stepLength();

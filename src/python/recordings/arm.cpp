@@ -89,7 +89,7 @@ private:
   ArmRow values_;
 };
 
-/// Set points of a motion, which is the name of a file, or columns.
+/// Set points of `motion`, which is the name of a file or has columns by name.
 std::vector<ArmSetPoint> setPointsIn(const py::object& motion, const ArmDescription& arm)
 {
   std::vector<ArmSetPoint> points =

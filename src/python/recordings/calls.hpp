@@ -88,7 +88,7 @@ class Given
 public:
   explicit Given(const py::dict& values) : values_(values) {}
 
-  /// Stores the given options in the fields of `table`. Their names are those of the command line in Python's spelling.
+  /// Stores the given options in the fields of `table`. The options have the command line's names in Python's spelling.
   /// @throws InputError.
   void take(OptionTable table) const
   {
@@ -251,7 +251,7 @@ private:
   std::vector<std::string> notices_;
 };
 
-/// Reads `overlays` into the options. @throws InputError, ParameterError.
+/// Reads the argument `overlays` of the call into `options`. @throws InputError, ParameterError.
 inline void takeOverlays(const Given& given, ConfigurationOptions& options)
 {
   const py::object overlays = given["overlays"];

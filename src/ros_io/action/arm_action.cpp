@@ -150,7 +150,7 @@ private:
     const GoalReport report = arm_.report();
     if (!current_ || report.number < number_)
     {
-      return;  // the loop has not taken the command yet
+      return;  // the loop has not yet taken the command of this goal
     }
     if (report.number > number_)
     {
