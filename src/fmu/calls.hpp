@@ -16,7 +16,7 @@
 /// the importer's log. Nothing is printed.
 namespace hjt::fmu
 {
-/// Sets the default floating-point environment during its lifetime. The importer's may trap or flush denormal numbers.
+/// Sets the default floating-point environment while it lives. That of the importer may trap or flush denormal numbers.
 class UsualArithmetic
 {
 public:

@@ -123,7 +123,7 @@ void DrivePart::giveInputs(Stamp instant, const Values& values, Twin& twin)
   }
 }
 
-/// Reads an output. From the first reading of an indicator or of the assessment on, the twin computes them.
+/// Reads an output. Indicators and assessment are computed only after the first reading of one of these outputs.
 bool DrivePart::read(std::size_t reference, Twin& twin, Values& values)
 {
   if ((*variables_)[reference].is_array)

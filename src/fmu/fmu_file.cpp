@@ -255,7 +255,7 @@ public:
     append(common, { { static_cast<std::uint32_t>(name.size()), 2 }, { 0, 2 } });
     append(files_, { { 0x04034b50, 4 } });
     files_ += common + name + bytes;
-    // These fields say: made on Unix by version 2.0, readable and executable for all users.
+    // The first fields say: made on Unix by version 2.0, readable and executable for all users.
     append(directory_, { { 0x02014b50, 4 }, { 0x0314, 2 } });
     directory_ += common;
     append(directory_, { { 0, 2 }, { 0, 2 }, { 0, 2 }, { 0100755u << 16, 4 }, { offset, 4 } });

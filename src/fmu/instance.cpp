@@ -41,7 +41,7 @@ std::size_t categoryOf(Status status) noexcept
   return status == Status::ERROR ? 1 : 0;
 }
 
-constexpr double NO_STOP = std::numeric_limits<double>::infinity();  // stop time that stands for none [s]
+constexpr double NO_STOP = std::numeric_limits<double>::infinity();  // stop time of an instance without stop time [s]
 
 std::string nameAndValue(const FmuVariable& variable, std::size_t element, double value)
 {

@@ -81,7 +81,7 @@ private:
   struct Stage
   {
     FaultList faults;
-    SurfacePool::Surface surface;  ///< may be null
+    SurfacePool::Surface surface;  ///< surface of the stage; may be null
   };
 
   int list(const FaultList& active, FaultSchedule later);

@@ -42,7 +42,7 @@ struct JointOutputs
   double released_energy{};      ///< stored energy that faults released when they set in, since the last reset [J]
   bool brake_engaged{};          ///< whether the brake holds the motor within brake.play
   bool converged{ true };        ///< false: the ring did not converge, and the twin keeps the last converged state
-  std::uint32_t iterations{};    ///< Newton iterations of the last step
+  std::uint32_t iterations{};    ///< number of Newton iterations of the last step
   std::uint32_t substeps{};  ///< number of substeps of the last step, 1 ... 31; more than 1 for short natural periods
   double residual{};         ///< largest out-of-balance force component on a tooth [N]
   double phase_advance{};    ///< phase by which the joint's fastest natural mode advances in a substep [rad]
@@ -81,13 +81,13 @@ struct HealthReport
 /// Numbers of steps and inputs since the last reset, for diagnostics.
 struct TwinCounters
 {
-  std::uint64_t steps{};             ///< all steps
+  std::uint64_t steps{};             ///< number of all steps
   std::uint64_t solver_failures{};   ///< steps that did not converge; the twin kept the last converged state
   std::uint64_t step_cuts{};         ///< steps in which the solver divided the path to the new angles
   std::uint64_t jumps{};             ///< steps in which a tooth passed over a tip into another space
   std::uint64_t coarse_steps{};      ///< steps that were too long for the fastest oscillation of the joint
-  InputCounters input;               ///< inputs except faults
-  FaultCounters faults;              ///< injected faults
+  InputCounters input;               ///< numbers of inputs, without faults
+  FaultCounters faults;              ///< numbers of injected faults
   std::uint64_t torque_clamped{};    ///< steps in which the command exceeded motor.torque_limit
   std::uint64_t load_clamped{};      ///< steps in which the load exceeded output.load_torque_limit
   std::uint64_t overloads{};         ///< steps in which the joint's torque exceeded output.torque_limit
@@ -113,8 +113,8 @@ public:
   Twin(Twin&&) noexcept;
   Twin& operator=(Twin&&) noexcept;
   /// Copies the state at the current instant, with waiting inputs and learned references. With equal inputs, copy and
-  /// original give bitwise equal results. They share the response surfaces, but the copy builds a surface that is not
-  /// yet finished in its own thread. Copying, assignment and the first steps of the copy allocate.
+  /// original give bitwise equal results. They share finished response surfaces; the copy builds an unfinished surface
+  /// again in a separate thread. Copying, assignment and the first steps of the copy allocate.
   Twin(const Twin& other);
   Twin& operator=(const Twin& other);
 
@@ -164,7 +164,7 @@ public:
   bool onSurface() const noexcept;
 
   ToothForces makeToothForces() const;  ///< arrays of the right size for toothForces; allocates
-  /// Computes the tooth forces at the current instant. On the response surface they come from a table of tooth forces
+  /// Computes the tooth forces at the current instant. On the response surface the forces come from a table of forces
   /// or, without such a table, from a separate full ring. @returns false if this ring has no equilibrium.
   bool toothForces(ToothForces& forces) noexcept;
   /// Computes the stresses of the flexspline like toothForces. `stress` must have one entry for each tooth.
