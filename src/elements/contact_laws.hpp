@@ -11,13 +11,13 @@ namespace hjt
 /// width > 0, a C1 ramp:      force = depth^2 / (2 width)  for 0 < depth < width,  depth - width/2  for larger depths
 struct ContactRamp
 {
-  double energy{};   ///< [m^2]
-  double force{};    ///< [m]
-  double tangent{};  ///< [-]
+  double energy{};   ///< energy over stiffness [m^2]
+  double force{};    ///< force over stiffness [m]
+  double tangent{};  ///< derivative of `force` by the depth [-]
 
   ContactRamp(double depth, double width) noexcept
   {
-    // The loops over the teeth vectorise because both branches are computed before one is selected.
+    // Both branches of the law are computed before one is selected, so that the loops over the teeth vectorise.
     const double part = depth / width;
     const double full_force = depth - 0.5 * width;
     const double full_energy = 0.5 * full_force * full_force + width * width / 24.0;
@@ -35,9 +35,9 @@ struct ContactRamp
 /// depth 0, where the contact opens, the tangent is 0.
 struct HertzContact
 {
-  double energy{};   ///< [m^2.5]
-  double force{};    ///< [m^1.5]
-  double tangent{};  ///< [m^0.5]
+  double energy{};   ///< energy over stiffness [m^2.5]
+  double force{};    ///< force over stiffness [m^1.5]
+  double tangent{};  ///< derivative of `force` by the depth [m^0.5]
 
   explicit HertzContact(double depth) noexcept
   {

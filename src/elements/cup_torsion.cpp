@@ -48,7 +48,7 @@ HJT_VECTOR_CLONES double CupTorsion::meanRotation(const RingShape& shape) const 
   const auto small_angles = [&](int i, auto& rows, int k)
   {
     rows[0][k] = smallAngle(across(i) / along(i));
-    // a double like the sums, so that the compiler vectorises the loop
+    // The count of large angles is a double like the sums, so that the compiler vectorises the loop.
     rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
   };
   auto [sum, large] = blockSums<2>(0, n, small_angles);

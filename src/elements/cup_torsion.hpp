@@ -28,7 +28,7 @@ class CupTorsion
 public:
   CupTorsion(const Parameters& parameters, const ToothRing& rest);
 
-  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. T1, T2 and the remaining compliance stay.
+  /// Multiplies the stiffness of wall and diaphragm by `factor` > 0 [-]. T1, T2 and the remaining compliance of C stay.
   void scaleWall(double factor) noexcept;
 
   /// mean rotation Phi of the tooth points from rest [rad]
@@ -39,7 +39,7 @@ public:
   double rotationAtTorque(double torque) const noexcept;   ///< inverse of C(Phi) [rad]
   double storedEnergy(double rotation) const noexcept;     ///< energy of the cup's torsion [J]
   double stiffness(double rotation) const noexcept;        ///< dC/dPhi [N.m/rad]
-  double complianceAtTorque(double torque) const noexcept  ///< 1 / stiffness [rad/(N.m)]
+  double complianceAtTorque(double torque) const noexcept  ///< 1 / (dC/dPhi) [rad/(N.m)]
   {
     const double size = torque < 0.0 ? -torque : torque;
     return size > torques_[1] ? compliances_[2] : size > torques_[0] ? compliances_[1] : compliances_[0];
@@ -62,7 +62,7 @@ private:
 
   double wall_compliance_;  // compliance of wall and diaphragm [rad/(N.m)]
   std::array<double, 3> slopes_;
-  std::array<double, 3> compliances_{};  // 1 / slopes_
+  std::array<double, 3> compliances_{};  // 1 / slopes_ [rad/(N.m)]
   std::array<double, 2> torques_;
   std::array<double, 2> rotations_;  // mean rotations at the breakpoints [rad]
   Eigen::VectorXd rest_radial_;

@@ -17,8 +17,8 @@ namespace hjt
 /// where T_g, T_h, T_a  temperatures of grease, housing and surroundings [degC]; C_g, C_h  heat capacities [J/K]
 ///       G, G_a  conductances [W/K]; P_f  friction, P_m  copper loss of the motor, P_0  standby power [W]
 ///
-/// A step of any length is exact for constant powers and surroundings. It uses that the two modes of the symmetric
-/// problem in sqrt(C) T decay independently. Without losses (G_a = 0) heat is conserved to rounding.
+/// A step of any length is exact for constant powers and surroundings, because the two modes of the symmetric problem
+/// in sqrt(C) T decay independently. If no heat flows out (G_a = 0), heat is conserved to rounding.
 class DriveHeat
 {
 public:
@@ -37,7 +37,7 @@ public:
     modes_ = solver.eigenvectors();
   }
 
-  /// Sets both temperatures to that of the surroundings, `ambient` [degC], plus the configured rise.
+  /// Sets both temperatures to `ambient` [degC], that of the surroundings, plus the rises in the configuration.
   void reset(double ambient) noexcept
   {
     grease_ = ambient + parameters_.grease_rise;
@@ -68,7 +68,7 @@ public:
     housing_ = ambient + temperature[1];
   }
 
-  /// Advances only the temperature of the grease. `housing`: measured temperature of the housing [degC].
+  /// Advances the temperature of the grease. `friction`: loss [J]; `housing`: measured housing temperature [degC].
   void advanceGrease(double seconds, double friction, double housing) noexcept
   {
     const double rate = parameters_.internal_conductance / parameters_.grease_capacity;
@@ -77,8 +77,8 @@ public:
     housing_ = housing;
   }
 
-  double grease() const noexcept { return grease_; }    ///< [degC]
-  double housing() const noexcept { return housing_; }  ///< [degC]
+  double grease() const noexcept { return grease_; }    ///< temperature of the grease [degC]
+  double housing() const noexcept { return housing_; }  ///< temperature of the housing [degC]
 
 private:
   // Mean of exp(-rate t) over a step from t = 0 to `seconds` [-].
@@ -91,7 +91,7 @@ private:
   ThermalParameters parameters_;
   Eigen::Vector2d root_;   // square roots of both heat capacities [sqrt(J/K)]
   Eigen::Vector2d rates_;  // decay rates of the modes [1/s]
-  Eigen::Matrix2d modes_;  // orthonormal columns
+  Eigen::Matrix2d modes_;  // modes as orthonormal columns
   double grease_{};
   double housing_{};
 };

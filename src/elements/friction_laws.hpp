@@ -54,7 +54,7 @@ public:
   void setStrength(int i, double strength) noexcept { values_(i, 0) = strength; }
 
   int size() const noexcept { return size_; }
-  int packedSize() const noexcept { return packed(size_); }  ///< number of terms with the zeros of the last pack
+  int packedSize() const noexcept { return packed(size_); }  ///< size() rounded up to a multiple of PACK
   FrictionTerm operator[](int i) const noexcept { return { values_(i, 0), { values_(i, 1), values_(i, 2) } }; }
   const double* strength() const noexcept { return values_.col(0).data(); }
   const double* byMotor() const noexcept { return values_.col(1).data(); }
@@ -100,7 +100,7 @@ struct JointFriction
     viscous.setZero();
   }
 
-  /// Power of the dry terms at these speeds of motor and output [W].
+  /// Power that the dry terms dissipate at the `speeds` of motor and output [rad/s] [W].
   double dryPower(const Eigen::Vector2d& speeds) const noexcept
   {
     double power = 0.0;
@@ -112,18 +112,18 @@ struct JointFriction
   }
 
   FrictionTerms terms;
-  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle, not among `terms` [N.m]
-  Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torque per speed, positive semi-definite [N.m.s/rad]
-  /// derivatives of x and y of each tooth point by the motor angle while the output turns at the velocity ratio [m/rad]
+  double presliding{};  ///< dry friction at the motor shaft that builds up over an angle; not in `terms` [N.m]
+  Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torques per speeds, positive semi-definite [N.m.s/rad]
+  /// derivatives of x and y of each tooth point by the motor angle, at constant load [m/rad]
   Eigen::VectorXd running;
-  // These data of the full ring determine the strengths of the terms of shaft and flanks at other speeds.
-  double contact_force{};      ///< sum of the wave generator's forces [N]
+  // With these data of the full ring the strengths of the terms of shaft and flanks follow at any speeds.
+  double contact_force{};      ///< sum of the wave generator's forces on all teeth [N]
   double ring_torque{};        ///< torque of JointModel::ringTorque [N.m]
   int flanks{};                ///< number of terms of flanks, which follow the term of the shaft
   Eigen::VectorXd flank_load;  ///< normal force of each term of a flank [N]
 };
 
-/// Share of its full torque above which a dry friction counts as sliding [-].
+/// A dry friction with more than this share of its full torque counts as sliding [-].
 constexpr double SLIDING_SHARE = 0.95;
 
 /// Share s of its full torque that a dry friction has after a further turn, -1 ... 1 [-], exactly by Dahl's model:
@@ -150,8 +150,8 @@ inline double mobilised(double share, double turn, double angle) noexcept
 /// The viscosity nu depends on the temperature T [K] of the oil in the grease:
 ///
 ///   nu^(2/3) = nu(T_0)^(2/3) (c + (1 - c) r^(2/3)),   r = nu_oil(T) / nu_oil(T_0)
-/// where c is bearing.constant_share, the share that does not depend on the temperature. Walther's law (ASTM D341)
-/// gives the viscosity nu_oil of the oil, with m = bearing.viscosity_slope:
+/// where T_0 is bearing.viscosity_temperature and c is bearing.constant_share, which does not depend on the
+/// temperature. Walther's law (ASTM D341) gives the viscosity nu_oil of the oil, with m = bearing.viscosity_slope:
 ///
 ///   lg lg(nu_oil + 0.7) = lg lg(nu_oil(T_0) + 0.7) - m lg(T / T_0)
 class BearingFriction
@@ -193,7 +193,7 @@ public:
   double viscosity(double temperature) const noexcept
   {
     constexpr double ZERO_CELSIUS = 273.15;  // K
-    constexpr double OFFSET = 0.7;           // [mm^2/s]; DIN 51563 has 0.8
+    constexpr double OFFSET = 0.7;           // added to viscosities in Walther's law [mm^2/s]; DIN 51563 has 0.8
     const double known = std::log10(1e6 * parameters_.oil_viscosity + OFFSET);
     const double ratio = (temperature + ZERO_CELSIUS) / (parameters_.viscosity_temperature + ZERO_CELSIUS);
     const double oil = 1e-6 * (std::pow(10.0, known * std::pow(ratio, -parameters_.viscosity_slope)) - OFFSET);
@@ -212,7 +212,7 @@ public:
   /// a third of the exponent (error 4 %). Two steps of the series of (1 - e)^(-1/3) reduce the error to rounding.
   static double twoThirdsPower(double x) noexcept
   {
-    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // with it the first guess for 1 is 1
+    constexpr std::uint64_t ONE = 0x553ef0ff289dd796;  // with this constant the first guess for x = 1 is 1
     std::uint64_t bits{};
     std::memcpy(&bits, &x, sizeof(bits));
     bits = ONE - bits / 3;
@@ -277,7 +277,7 @@ public:
   {
     std::array<double, ELEMENTS> twist{};  ///< twist z_j of each spring [rad]
     double rotation{};                     ///< mean rotation Phi of the rim [rad]
-    double torque{};                       ///< torque against positive rotation [N.m]
+    double torque{};                       ///< torque of the friction; > 0 against positive rotation [N.m]
     double stiffness{};                    ///< stiffness of the elements that do not slip [N.m/rad]
     double energy{};                       ///< stored energy [J]
     double slipped{};                      ///< dissipated energy since the preceding state [J]

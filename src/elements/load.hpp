@@ -17,7 +17,7 @@ public:
 
   double inertia() const noexcept { return parameters_.circular_spline_inertia + parameters_.load_inertia; }
   double viscousFriction() const noexcept { return parameters_.viscous_friction; }
-  /// Dry friction of the output's bearing and seals, with the part by the tilting moment [N.m].
+  /// Dry friction of the output's bearing and seals, including the part that the tilting moment causes [N.m].
   double dryFriction() const noexcept
   {
     return parameters_.coulomb_torque + parameters_.tilting_friction * parameters_.tilting_moment;

@@ -62,7 +62,7 @@ public:
   /// inverse time constant of the current's lag; 0: no lag [rad/s]
   double currentRate() const noexcept { return TWO_PI * parameters_.current_bandwidth; }
 
-  /// Torque at a temperature over the torque of an equal current at 25 degC [-].
+  /// Torque at a temperature [degC] over the torque of an equal current at 25 degC [-].
   double torqueFactor(double temperature) const noexcept
   {
     constexpr double REFERENCE = 25.0;  // [degC]
@@ -77,7 +77,7 @@ public:
                torque * (1.0 + parameters_.torque_ripple * std::sin(6 * parameters_.pole_pairs * angle));
   }
 
-  /// Energy of cogging [J], torque of cogging [N.m] and largest second derivative of the energy [N.m/rad].
+  /// Energy of cogging [J]. coggingTorque [N.m]; coggingStiffness: largest second derivative of the energy [N.m/rad].
   double coggingEnergy(double angle) const noexcept
   {
     return cogs() ? -parameters_.cogging_torque / parameters_.cogging_periods *
@@ -133,7 +133,7 @@ public:
   };
 
   /// Moves the middle of the play if the brake slips. `angle`: motor angle [rad]; `push`: sign of the motor's speed or,
-  /// at rest, of the torque on it. @returns the holding torque in the step around this instant [N.m].
+  /// at rest, of the torque on the motor. @returns the holding torque in the step around this instant [N.m].
   double hold(bool engaged, double angle, double push, Pin& pin) const noexcept
   {
     if (!engaged)
@@ -148,7 +148,7 @@ public:
     pin.middle = std::clamp(pin.middle, angle - half_play_, angle + half_play_);
     const bool met = !pin.touches;
     pin.touches = play_left() <= CONTACT * half_play_;
-    // If the shaft met the pin after the last step, the pin holds the shaft from then until half a step after now.
+    // If the shaft met the pin after the last update, the pin holds it from this contact until half a step after now.
     const double share = met && half_play_ > 0.0 && moved > beyond ? 0.5 + beyond / moved : 1.0;
     return pin.touches ? share * holding_torque_ : 0.0;
   }

@@ -12,7 +12,7 @@ namespace
 {
 using Bump = RaceDeflection::Drop;  // values 0 ... 1
 
-/// Raised cosine of half width `half` at `angle` from its middle. `rate`: derivative of `angle` by the motor angle.
+/// Raised cosine of half width `half` at `angle` from its middle [rad]. `rate`: d(angle)/d(motor angle).
 Bump bump(double angle, double rate, double half) noexcept
 {
   const double x = std::remainder(angle, TWO_PI);

@@ -55,11 +55,11 @@ public:
   /// Drop of a ball with its derivatives by the wave generator's angle.
   struct Drop
   {
-    double value{};   ///< [m]
-    double rate{};    ///< [m/rad]
-    double second{};  ///< [m/rad^2]
+    double value{};   ///< drop [m]
+    double rate{};    ///< derivative of the drop by the wave generator's angle [m/rad]
+    double second{};  ///< second derivative of the drop [m/rad^2]
   };
-  /// Sum of the drops of a ball by all faults.
+  /// Sum of the drops of a ball by all faults of the bearing.
   Drop drop(int ball, double wave_generator_angle) const noexcept;
 
   /// Sag of the race at `angle` from a ball, divided by the drop of this ball [-].
@@ -69,7 +69,8 @@ public:
   double deepest() const noexcept;
   /// Whether at most one ball drops at a time, because there is one fault and it is shorter than a ball pitch.
   bool dropsOneBall() const noexcept;
-  /// The only ball that can drop at a wave generator angle [rad], if dropsOneBall() or if the bearing is sound.
+  /// Index of the ball that may drop at a wave generator angle [rad], if dropsOneBall(); no other ball drops. If the
+  /// bearing is sound, the drop of every ball is 0.
   int ballThatMayDrop(double wave_generator_angle) const noexcept;
 
   int balls() const noexcept { return balls_; }
@@ -91,7 +92,7 @@ private:
     int ball;
     double place;  // angle of the spall [rad]
     double depth;  // depth of the spall [m]
-    double half;   // half its length as an angle [rad]
+    double half;   // half the length of the spall as an angle [rad]
   };
   void add(const Spall& spall) noexcept;
   double dropInto(double depth, double length) const noexcept;

@@ -49,7 +49,7 @@ HJT_VECTOR_CLONES void RimTension::addTangent(const RingShape& shape, const Scra
 #pragma omp simd
   for (int i = 0; i < n; ++i)
   {
-    // Along the segment the stiffness is that of the spring. Across the segment it is tension / length.
+    // Along the segment the stiffness is that of the spring. Across the segment the stiffness is tension / length.
     const double across = stiffness[i] * (length[i] - rest) / length[i];
     const double x = direction[2 * i];
     const double y = direction[2 * i + 1];
@@ -116,7 +116,7 @@ HJT_VECTOR_CLONES void RimBending::addMoments(const RingShape& shape, Scratch& s
     const double angle = turn - natural_angle[i];
     moment[i] = stiffness[i] * angle + race * turn;
     rows[0][k] = 0.5 * stiffness[i] * angle * angle + 0.5 * race * turn * turn;
-    // a double like the sums, so that the compiler vectorises the loop
+    // The count of large angles is a double like the sums, so that the compiler vectorises the loop.
     rows[1][k] = std::abs(across(i)) < SMALL_TANGENT * along(i) ? 0.0 : 1.0;
   };
   auto [energy, large] = blockSums<2>(0, n, bend);
@@ -168,8 +168,8 @@ void RimBending::addTangent(const RingShape& shape, const Scratch& scratch, Ring
   }
 }
 
-/// Adds the stiffness between the ends of each segment. It comes from the turn of the segment under its couple and,
-/// with the absolute law, from the bending stiffness.
+/// Adds the stiffness between the ends of each segment. This stiffness comes from the turn of the segment under its
+/// couple and, with the absolute law, from bending.
 HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const Scratch& scratch,
                                                   RingTangent& tangent) const noexcept
 {
@@ -203,8 +203,8 @@ HJT_VECTOR_CLONES void RimBending::addTurnTangent(const RingShape& shape, const 
   tangent.addSegments(n);
 }
 
-/// Gradient g of the angle of each solved segment by the position of its far end. If half of the ring is solved, also
-/// for the segments before and after this half.
+/// Writes the gradient g of the angle of each solved segment by the position of its far end [rad/m]. If half of the
+/// ring is solved, also writes the gradients of the segments before and after this half.
 inline void fillGradients(const RingShape& shape, double* __restrict__ gx, double* __restrict__ gy) noexcept
 {
   const int n = shape.solved;
@@ -228,9 +228,9 @@ inline void fillGradients(const RingShape& shape, double* __restrict__ gx, doubl
   }
 }
 
-/// Adds the bending stiffness between neighbouring segments: k times the outer product of the gradient of the bending
-/// angle with itself. For the bending angle at tooth i, the gradient by the next tooth is g_i, by the preceding tooth
-/// g_{i-1}, and by tooth i minus their sum.
+/// Adds the bending stiffness between neighbouring segments: the stiffness times the outer product of the gradient of
+/// the bending angle with itself. The gradient of the bending angle at tooth i is g_i (fillGradients) by the next
+/// tooth, g_{i-1} by the preceding tooth, and -g_i - g_{i-1} by tooth i.
 HJT_VECTOR_CLONES void RimBending::addCurvatureTangent(const RingShape& shape, RingTangent& tangent) const noexcept
 {
   const int n = shape.solved;

@@ -52,7 +52,7 @@ private:
 /// where    eta_i   rotation of the segment from tooth i to i+1 from rest [rad]
 ///          k_i     stiffness of the rim, >= 0                            [N.m/rad]
 ///          k_race  stiffness of the race, equal at all teeth                     [N.m/rad]
-/// A permanently bent rim has a natural angle. It is subtracted from eta_i (absolute law) or eta_i - eta_{i-1}
+/// A permanently bent rim has a natural angle. This angle is subtracted from eta_i (absolute law) or eta_i - eta_{i-1}
 /// (curvature law) in the term of k_i, but not in that of k_race.
 class RimBending
 {

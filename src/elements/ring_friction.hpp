@@ -57,7 +57,7 @@ public:
   void addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& found, const RingRates& rates,
                 const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
-  /// Computes the strengths of the terms of `addTerms` at other speeds. `first`: index of the first of these terms.
+  /// Computes the strengths of the terms of `addTerms` for other `speeds`. `first`: index of the first of these terms.
   void setStrengths(int first, const Eigen::Vector2d& speeds, JointFriction& friction) const noexcept;
 
   /// Friction coefficient by the Stribeck curve at a sliding speed along the flank [m/s] [-].
@@ -88,10 +88,10 @@ private:
 
 /// Friction between the outer race of the wave generator's bearing and the flexspline.
 ///
-/// The race does not slide in the rim but rolls, because the torque mu F r of full sliding is much larger than the
-/// bearing friction. Slip arises because rim and race bend about neutral fibres at a distance, the lever. The slip is
-/// the lever times the rate at which the rim tilts. By thesis eq. 7.25-7.28 the race would slide at motor speed, with a
-/// torque of 74 N.m against a motor of 2.87 N.m.
+/// The race does not slide in the rim but rolls, because the torque mu F r of full sliding (coefficient of friction,
+/// contact force, radius) is much larger than the bearing friction. Slip arises because the neutral fibres of rim and
+/// race are a distance apart, the lever. The slip is the lever times the rate at which the rim tilts. By thesis eq.
+/// 7.25-7.28 the race would slide at motor speed, with a torque of 74 N.m against a motor of 2.87 N.m.
 class InterfaceFriction
 {
 public:
@@ -103,7 +103,7 @@ public:
   void scale(double factor) noexcept { coefficient_ *= factor; }
 
   /// Magnitude of the torque at the motor shaft, >= 0 [N.m]. `found`: result of the contact at `shape`; `rates`:
-  /// derivatives of the tooth points by the motor angle while the output turns at the velocity ratio [m/rad].
+  /// derivatives of the tooth points by the motor angle, at constant load [m/rad].
   double torque(const RingShape& shape, const WaveGeneratorContact::Scratch& found,
                 const Eigen::VectorXd& rates) const noexcept;
 
@@ -117,10 +117,10 @@ private:
 ///   torque at the motor shaft = (pi / 2) eta sum_i |M_i dkappa_i/dtheta|
 /// where  M_i     bending moment at tooth i [N.m]
 ///       kappa_i angle between the segments on either side of the tooth [rad]
-///       theta   motor angle, while the output turns at the velocity ratio [rad]
+///       theta   motor angle, at constant load [rad]
 ///       eta     ring.loss_factor: a cycle of amplitude M_a loses pi eta M_a^2 / k, k = stiffness at the tooth [-]
 ///
-/// The law is exact for a moment that alternates about zero, like the wave's. It treats all moments as alternating.
+/// The law is exact for a moment that alternates about zero, like that of the wave, and is applied to all moments.
 class FlexingLoss
 {
 public:

@@ -40,8 +40,8 @@ void RingTangent::closeHalf() noexcept
 {
   const int half = teeth() / 2;
   const int last = half - 1;
-  // Neighbours outside the half have entries too. Those of tooth `half` are added to tooth 0, and those of the last
-  // tooth of the ring to the last tooth of the half.
+  // The neighbours of the half ring have entries too. The entries of tooth `half` are added to tooth 0, and those of
+  // the last tooth of the ring to the last tooth of the half.
   const int beyond = teeth() - 1;
   for (Eigen::VectorXd* entry : { &diagonal.xx, &diagonal.xy, &diagonal.yy })
   {

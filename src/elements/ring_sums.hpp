@@ -32,7 +32,7 @@ struct ForceSum
   /// Extends the sum over the first half of the ring to the whole ring.
   void repeat() noexcept
   {
-    // Two teeth of the other half have forces from this half, which are added at their copies in this half.
+    // The segments of this half load two teeth of the other half. These forces are added to copies in this half.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();
@@ -176,7 +176,7 @@ struct RingTangent
   double cup_stiffness{};         ///< stiffness of the cup for its mean rotation [N.m/rad]
   /// mixed derivative of the energy by x and y of each tooth point and the wave generator angle [N/rad]
   Eigen::VectorXd wave_generator;
-  Eigen::VectorXd output;             ///< mixed derivative by x and y of each tooth point and the output angle [N/rad]
+  Eigen::VectorXd output;             ///< mixed derivative of the energy by x, y and the output angle [N/rad]
   double wave_generator_stiffness{};  ///< second derivative of the energy by the wave generator angle [N.m/rad]
   int solved{};                       ///< number of solved teeth: all teeth, or those of the first half
   double output_stiffness{};          ///< second derivative of the energy by the output angle [N.m/rad]

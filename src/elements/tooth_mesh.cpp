@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-constexpr double OUTSIDE = -1.0;  // stands for the depth in a flank if the tip is not in the circular spline [m]
+constexpr double OUTSIDE = -1.0;  // replaces the depth in a flank if the tip is outside the circular spline [m]
 
 /// Position of a tooth across and along the axis of its space, as in ToothEngagement [m].
 struct ToothPose
@@ -20,7 +20,7 @@ struct ToothPose
   double zeta;
 };
 
-/// Position of tooth i at mid-height. `h`, `j`: its neighbours; `axis_x`, `axis_y`: direction of its space.
+/// Position of tooth i at mid-height. `h`, `j`: teeth before and after i; `axis_x`, `axis_y`: axis of the space.
 inline ToothPose poseOf(const double* point, double mid_height, int h, int i, int j, double axis_x,
                         double axis_y) noexcept
 {
@@ -137,7 +137,7 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
   return law;
 }
 
-/// Computes the depth of every tooth in the nearer flank. This is fast, because most teeth touch no flank.
+/// Computes the depth of every tooth in the nearer flank. Only the few teeth in contact need more.
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
                                               Scratch& scratch) const noexcept
 {
@@ -227,7 +227,7 @@ void ToothMesh::addForces(const RingShape& shape, const DrivePosition& position,
     const ToothEngagement& tooth = contact.place;
     const FlankLaw& at = contact.law;
     const Eigen::Vector2d gradient = at.by_xi * tooth.across + at.by_zeta * tooth.radial;
-    // The tooth tilts with its chord. Its couple therefore acts on the neighbours along the normal of the chord.
+    // The tooth tilts with its chord. Therefore its couple acts on the neighbours, along the chord's normal.
     const Eigen::Vector2d& normal = tooth.chord.normal;
     const double couple = mid_height_ / tooth.chord.length * (-normal.y() * gradient.x() + normal.x() * gradient.y());
     sum.teeth.segment<2>(2 * i) -= gradient;
@@ -306,8 +306,7 @@ void ToothMesh::pairAtRest(const DrivePosition& position, RingShape& shape) cons
 }
 
 /// Assigns the space nearest to the angle at rest to every tooth whose tip cannot reach the circular spline at any
-/// tilt.
-/// @returns the number of other teeth that are outside their space.
+/// tilt. @returns the number of other teeth that are outside their space.
 HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   const double cos_output = std::cos(position.output_angle);
@@ -329,7 +328,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
-    int rest = static_cast<int>(first + i * spaces_a_tooth);  // is less than 3 spaces
+    int rest = static_cast<int>(first + i * spaces_a_tooth);  // less than 3 * spaces
     rest -= rest >= spaces ? spaces : 0;
     rest -= rest >= spaces ? spaces : 0;
     space[i] = reaches ? space[i] : rest;
@@ -355,8 +354,8 @@ int ToothMesh::pairNearest(const DrivePosition& position, RingShape& shape) cons
   return jumps * shape.copies();
 }
 
-/// Assigns the nearest space to every tooth that touches no flank and is outside its space. @returns the number that
-/// `pairNearest` returns, for the solved teeth only.
+/// Assigns the nearest space to every tooth that touches no flank and is outside its space. @returns the number of
+/// solved teeth that passed over a tip of the circular spline.
 int ToothMesh::pairInReach(const DrivePosition& position, RingShape& shape) const noexcept
 {
   int jumps = 0;

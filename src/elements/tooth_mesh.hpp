@@ -21,7 +21,7 @@ struct ToothEngagement
   Eigen::Vector2d across;  ///< unit vector perpendicular to `radial`, counter-clockwise [-]
   Chord chord;
   double xi;           ///< distance of the tooth from the axis of its space in the perfect gear, along `across` [m]
-  double zeta;         ///< distance along `radial` [m]
+  double zeta;         ///< distance of the tooth from the axis of the drive, along `radial` [m]
   double tooth_ahead;  ///< error of manufacture of the tooth minus that of the space, along `across` [m]
   double space_out;    ///< error of manufacture of the space minus that of the tooth, along `radial` [m]
 };
@@ -117,7 +117,7 @@ public:
     Eigen::VectorXd pressed;      ///< depth of each tooth in the nearer flank, across the axis; > 0 in contact [m]
     Eigen::VectorXd along;        ///< zeta of the solved teeth [m]
   };
-  /// `scratch` must be set to zero before.
+  /// Adds energy and forces to `sum`. The caller must set `scratch` to zero before.
   void addForces(const RingShape& shape, const DrivePosition& position, Scratch& scratch, ForceSum& sum) const noexcept;
   void addTangent(const RingShape& shape, const Scratch& scratch, RingTangent& tangent) const noexcept;
   bool repeats() const noexcept;
@@ -136,7 +136,7 @@ public:
                       double output_speed) const noexcept;
 
   const Eigen::VectorXd& stiffness() const noexcept { return stiffness_; }
-  /// stiffness of each tooth, which faults change [N/m]
+  /// stiffness of the tooth pair at each tooth, which faults change [N/m]
   Eigen::VectorXd& stiffness() noexcept { return stiffness_; }
   /// reduction of each tooth's height, >= 0, which faults change [m]
   Eigen::VectorXd& tipLoss() noexcept { return tip_loss_; }
@@ -166,7 +166,7 @@ private:
   int spaces_;
   double mid_height_;
   double tip_offset_;  // half the tooth height minus the circular spline's tip radius [m]
-  double reach_;       // radius of a tooth point below which the tip cannot touch [m]
+  double reach_;       // radius of a tooth point below which the tip cannot touch the circular spline [m]
   double depth_;
   double smoothing_;
   double cos_flank_;

@@ -200,7 +200,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::findFeet(const RingShape& shape, co
     }
     return;
   }
-  double far = 0.0;  // number of far teeth; a double, so that the compiler vectorises the loop
+  double far = 0.0;  // number of teeth far from the ellipse; a double, so that the compiler vectorises the loop
 #pragma omp simd reduction(+ : far)
   for (int i = 0; i < n; ++i)
   {

@@ -33,12 +33,12 @@ public:
   struct Ball
   {
     std::array<int, 3> tooth;      ///< the three teeth nearest to the ball
-    std::array<double, 3> weight;  ///< [-]
+    std::array<double, 3> weight;  ///< weight of each of these teeth [-]
     std::array<double, 3> rate;    ///< derivative of each weight by the wave generator's angle [1/rad]
     std::array<double, 3> second;  ///< second derivative of each weight [1/rad^2]
     RaceDeflection::Drop drop;
     double depth;  ///< depth_b; < 0: the ball carries no load [m]
-    double force;  ///< [N]
+    double force;  ///< force of the ball [N]
     double slope;  ///< derivative of the ball's force by the depth [N/m]
   };
   struct Scratch
@@ -53,7 +53,7 @@ public:
   double press(const RaceDeflection& bearing, double wave_generator_angle, const Eigen::VectorXd& depth,
                Scratch& scratch, Eigen::VectorXd& force, double& torque) const noexcept;
 
-  /// Adds the Hessian of the energy, except the part by the turn of the normals under the forces on the teeth.
+  /// Adds the Hessian of the energy, except the part that comes from the turn of the loaded normals.
   void addTangent(const RaceDeflection& bearing, const RingShape& shape, const Eigen::VectorXd& depth,
                   const Eigen::VectorXd& normal, const Scratch& scratch, RingTangent& tangent) const noexcept;
 

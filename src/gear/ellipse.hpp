@@ -14,7 +14,7 @@ struct EllipseFoot
   double curvature;  ///< curvature of the ellipse at the foot [1/m]
 };
 
-/// Foot for a point (x, y). `c`, `s`: cosine and sine of the eccentric angle of the foot.
+/// Foot for the point (x, y) [m]. `a`, `b`: semi-axes [m]; `c`, `s`: cosine and sine of the foot's eccentric angle.
 inline EllipseFoot footAt(double a, double b, double x, double y, double c, double s) noexcept
 {
   const double nx = b * c;
@@ -49,7 +49,7 @@ inline bool isNear(double a, double b, double x, double y) noexcept
 /// Point of the ellipse with the semi-axes a and b that is closest to a nearby point (x, y). Newton's method on the
 /// eccentric angle solves thesis eq. 5.8, which the thesis approximates. The angle is stored as a unit vector.
 ///
-/// The first guess has an error of relative depth times squared eccentricity, about 1e-5 rad for a real wave generator.
+/// The first guess has an error of depth / radius times squared eccentricity, about 1e-5 rad for a real wave generator.
 /// A Newton step of size e leaves an error of 0.02 e^2, so that one step reaches 1e-10 rad. The code has no branches
 /// and few divisions, so that the compiler vectorises it.
 inline EllipseFoot closestPointNear(double a, double b, double x, double y) noexcept

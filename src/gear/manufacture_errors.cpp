@@ -35,7 +35,7 @@ Eigen::VectorXd seededDeviations(double total, int seed, int teeth)
 
 Eigen::VectorXd readDeviations(const std::string& path, int teeth)
 {
-  constexpr double MAX_ERROR = 1e-4;  // a tenth of the tooth pitch of the shipped gear [m]
+  constexpr double MAX_ERROR = 1e-4;  // largest allowed deviation, a tenth of the tooth pitch of the shipped gear [m]
   NumberTable<2> table(path, { "tooth", "deviation" });
   Eigen::VectorXd deviations(teeth);
   std::array<double, 2> row{};

@@ -16,8 +16,8 @@ namespace hjt
 ///          A        makes the largest minus the smallest F_i equal to the total cumulative pitch deviation Fp [m]
 ///          phase_k  k-th number of the generator mt19937 over 2^32, times 2 pi: equal on every platform    [rad]
 ///
-/// The amplitudes 1/k are those of a gear that is cut tooth by tooth. The kinematic error of a drive with two encoders
-/// supports them: 6.9 arc seconds at order 2, 3.1 at order 4. Deviations from a table are not scaled.
+/// The amplitudes 1/k are those of a gear that is cut tooth by tooth. The kinematic error of a measured drive supports
+/// these amplitudes: 6.9 arc seconds at order 2, 3.1 at order 4. Deviations from a table are not scaled.
 ///
 /// `key`: parameter that names the table, for the error message. @throws ParameterError if the table is invalid.
 Eigen::VectorXd pitchDeviations(const PitchParameters& pitch, int teeth, const std::string& key);

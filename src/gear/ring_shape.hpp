@@ -70,7 +70,7 @@ struct DrivePosition
 struct Chord
 {
   Eigen::Vector2d normal;  ///< outward unit normal [-]
-  double length;           ///< [m]
+  double length;           ///< length of the chord [m]
 };
 
 template <class Values>
@@ -116,10 +116,10 @@ struct RingShape
   int next(int i) const noexcept { return i + 1 == teeth() ? 0 : i + 1; }
   int previous(int i) const noexcept { return i == 0 ? teeth() - 1 : i - 1; }
 
-  /// Computes directions and lengths from the points of the solved teeth, and the other half of all values.
+  /// Computes directions and lengths from the points of the solved teeth, and all values of the other teeth.
   void updateGeometry() noexcept;
 
-  /// Computes the spaces of the other half of the teeth. `spaces`: number of spaces of the circular spline.
+  /// Computes the spaces of the teeth that are not solved. `spaces`: number of spaces of the circular spline.
   void repeatSpaces(int spaces) noexcept;
 
   Chord chord(int i) const noexcept

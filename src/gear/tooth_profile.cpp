@@ -24,7 +24,7 @@ double involuteHalfWidth(double radius, double reference, double pressure_angle,
   return radius * std::sin(half_angle);
 }
 
-/// Flank of a double-arc tooth. `fall`: half thickness at mid-height minus that at `y` above it [m].
+/// Flank of a double-arc tooth. `fall`: half thickness at mid-height minus that at the height `y` above it [m].
 class DoubleArc
 {
 public:
@@ -33,7 +33,7 @@ public:
   {
     const double arc_height = 0.5 * gear.tooth_height_flexspline - half_tangent_;
     const double tip_sine = std::sin(std::atan(path.slope(path.entry())));
-    // If the tangent is steeper than the path or as long as the tooth, the flank is straight, without an arc.
+    // If the tangent is steeper than the path at entry, or as long as the tooth, the flank is straight, without an arc.
     curvature_ = arc_height > 0.0 ? std::max(0.0, tip_sine - sine_) / arc_height : 0.0;
   }
 
@@ -125,7 +125,7 @@ FlankShapes::FlankShapes(const MeshParameters& mesh, const GearParameters& gear,
       const DoubleArc arc(mesh, gear, path);
       sample([&](double down) { return -arc.fall(tip - down); },
              [](double) { return -std::numeric_limits<double>::infinity(); });
-      // The space is the envelope of the tooth along its path. Beyond the reach of the tip it has the tip's width.
+      // The space is the envelope of the tooth along its path. Where the tip does not reach, it is as wide as the tip.
       space.tail(beyond).setConstant(tooth[0]);
       for (int drop = 0; drop <= intervals; ++drop)
       {

@@ -63,8 +63,8 @@ struct FlankShapes
 struct HalfClearance
 {
   double value;      ///< half clearance; < 0: interference [m]
-  double slope;      ///< minus the derivative along the axis of the space: tangent of the flank's angle [-]
-  double curvature;  ///< derivative of the slope [1/m]
+  double slope;      ///< minus the derivative of `value` along the axis of the space: tangent of the flank's angle [-]
+  double curvature;  ///< derivative of `slope` along the axis of the space [1/m]
   double cosine;     ///< cosine of the flank's angle [-]
 };
 
@@ -126,7 +126,7 @@ private:
   double cosine_;
   double start_{};     // start of the table [m]
   double end_{};       // length of the table [m]
-  double interval_{};  // [m]
+  double interval_{};  // length of an interval of the table [m]
   double intervals_per_metre_{};
   // for each interval the coefficients of the half clearance as a cubic of the distance from the interval's start
   std::vector<std::array<double, 4>> cubics_;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-/// Attribute of a function with loops over the teeth. The compiler makes one version for every x86-64 and one for AVX2,
-/// and the loader of the library selects a version. The attribute is empty on other platforms, and with the thread
+/// Attribute of a function with loops over the teeth. The compiler makes one version for any x86-64 processor and one
+/// for AVX2, and the library's loader selects a version. The attribute is empty on other platforms, and with the thread
 /// sanitizer, which cannot watch this selection. There is no version for AVX-512, because AVX-512 implies FMA, and GCC
 /// 12 then fuses a product with a sum even with -ffp-contract=off.
 #if defined(HJT_AVX2) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
@@ -49,7 +49,7 @@ inline __attribute__((always_inline)) void add(const double (&block)[N][BLOCK], 
 }
 }  // namespace block_sums
 
-/// N sums over `count` indices, from `first` on.
+/// N sums of `terms` over the indices first ... first + count - 1.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> blockSums(int first, int count, const Terms& terms) noexcept
 {
@@ -80,7 +80,7 @@ inline __attribute__((always_inline)) std::array<double, N> blockSums(int first,
   return sums;
 }
 
-/// Sum of `term(i)` over `count` indices, from `first` on.
+/// Sum of `term(i)` over the indices i = first ... first + count - 1.
 template <class Term>
 inline __attribute__((always_inline)) double blockSum(int first, int count, const Term& term) noexcept
 {

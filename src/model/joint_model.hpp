@@ -14,16 +14,16 @@ namespace hjt
 /// External inputs of the joint, constant during a step.
 struct JointInputs
 {
-  double load() const noexcept { return load_torque + arm_torque; }  ///< sum of the torques on the output [N.m]
+  double load() const noexcept { return load_torque + arm_torque; }  ///< torque of load and arm on the output [N.m]
 
-  double motor_torque{};  ///< torque that the motor should have at 25 degC, within its torque limit [N.m]
+  double motor_torque{};  ///< wanted torque of the motor at 25 degC, within its torque limit [N.m]
   double load_torque{};   ///< external torque at the output; > 0 resists positive motion [N.m]
   bool brake_engaged{};
   double temperature{};  ///< temperature of the grease [degC]
   double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// The whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes it, in a copy of its own.
+/// The whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes a model, namely its own copy.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);
@@ -42,7 +42,7 @@ struct JointModel
            motor.coggingEnergy(position.wave_generator_angle);
   }
 
-  /// Torques on motor and output except friction [N.m]. `motor_torque`: torque of the motor.
+  /// Torques on motor and output, without friction [N.m]. `motor_torque`: torque of the motor without ripple.
   Eigen::Vector2d torque(const RingResponse& ring_response, const DrivePosition& position, double motor_torque,
                          double load_torque) const noexcept
   {
@@ -69,7 +69,7 @@ struct JointModel
   };
 
   /// Friction torque of outer race and flexing rim at the motor shaft [N.m]. `running`: derivatives of the tooth points
-  /// by the motor angle while the output turns at the velocity ratio [m/rad].
+  /// by the motor angle, at constant load [m/rad].
   double ringTorque(const RingShape& shape, const RingForces& forces, const Eigen::VectorXd& running) const noexcept
   {
     return interface_friction.torque(shape, forces.of<WaveGeneratorContact>(), running) +
@@ -81,7 +81,7 @@ struct JointModel
   void friction(const RingForces& forces, const RingRates& rates, double velocity_ratio, const Running& running,
                 JointFriction& friction) const noexcept;
 
-  /// Updates the friction for another `running` at an unchanged ring.
+  /// Updates the friction of an unchanged ring to the speeds, brake torque and viscosity of `running`.
   void frictionAt(const Running& running, JointFriction& friction) const noexcept;
 
   /// Computes all friction from the RingFrictionResponse of a table. `cup_slip`: see CupFriction::addTerm.

@@ -11,9 +11,9 @@ namespace hjt
 /// Forces on the teeth at one instant, with one entry for each tooth of the flexspline.
 struct ToothSample
 {
-  Eigen::Ref<const Eigen::VectorXd> mesh_force;            ///< force on the flank; > 0 leading, < 0 trailing flank [N]
-  Eigen::Ref<const Eigen::VectorXd> wave_generator_force;  ///< force of the wave generator [N]
-  Eigen::Ref<const Eigen::VectorXd> tooth_angle;           ///< angle of the tooth [rad]
+  Eigen::Ref<const Eigen::VectorXd> mesh_force;            ///< force on each flank; > 0 leading, < 0 trailing flank [N]
+  Eigen::Ref<const Eigen::VectorXd> wave_generator_force;  ///< force of the wave generator on each tooth [N]
+  Eigen::Ref<const Eigen::VectorXd> tooth_angle;           ///< angle of each tooth [rad]
   double wave_generator_angle;                             ///< angle of the major axis [rad]
 };
 

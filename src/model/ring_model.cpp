@@ -71,7 +71,7 @@ void RingModel::tangent(const RingShape& shape, const RingForces& forces, RingTa
 
 int RingModel::solvedTeeth() const noexcept
 {
-  constexpr int FEWEST = 16;  // least number of teeth of the ring for a CyclicSolver of its half
+  constexpr int FEWEST = 16;  // least number of teeth of a ring whose half a CyclicSolver can solve
   const bool repeats = std::apply([](const auto&... element) { return (element.repeats() && ...); }, elements_) &&
                        rest.teeth() >= FEWEST;
   return repeats ? rest.teeth() / 2 : rest.teeth();

@@ -23,8 +23,8 @@ namespace hjt
 ///   struct Scratch { explicit Scratch(int teeth); void setZero() noexcept; void repeat() noexcept; }
 ///   void addForces(const RingShape&, const DrivePosition&, Scratch&, ForceSum&) const noexcept
 ///   void addTangent(const RingShape&, const Scratch&, RingTangent&) const noexcept: for the last shape of addForces
-///   bool repeats() const noexcept: whether the element repeats after half a turn. If all elements repeat, they add for
-///                                  half of the teeth only, and Scratch::repeat computes the other half.
+///   bool repeats() const noexcept: whether the element repeats after half a turn. If all elements repeat, each adds
+///                                  the forces of half of the teeth, and Scratch::repeat computes the other half.
 ///
 /// Scratch keeps results of addForces for tangent, friction and outputs. docs/extending.md describes how to add an
 /// element.
@@ -104,7 +104,7 @@ private:
   std::uint64_t stamp_{};
 };
 
-/// Version of a model: a number that changes with every change of the model and with every assignment to it.
+/// Version of a model: a number that changes with every change of the model and with every assignment to the model.
 class ModelVersion
 {
 public:
@@ -134,15 +134,15 @@ public:
   /// @throws ParameterError if a table of pitch errors is invalid.
   explicit RingModel(const Parameters& parameters);
 
-  /// Computes forces and stored energy, without those of the mesh if the circular spline is absent. Requires
-  /// RingShape::updateGeometry of `shape`.
+  /// Computes forces and stored energy, without those of the mesh if the circular spline is absent. The caller must
+  /// have called `shape.updateGeometry`.
   void forces(const RingShape& shape, const DrivePosition& position, RingForces& forces,
               bool circular_spline_in = true) const noexcept;
 
   /// Computes the Hessian of the stored energy. `forces`: result of `forces` for `shape`.
   void tangent(const RingShape& shape, const RingForces& forces, RingTangent& tangent) const noexcept;
 
-  /// Number of teeth to solve: half of them if the model repeats after half a turn, else all.
+  /// Number of teeth to solve: half of all teeth if the model repeats after half a turn, else all teeth.
   int solvedTeeth() const noexcept;
 
   /// Shape of the ring at rest, in which every tooth faces its nearest space.
@@ -184,7 +184,7 @@ private:
 /// Torques and stiffness of the ring in equilibrium at given motor and output angles, without friction.
 struct RingResponse
 {
-  double energy{};                 ///< stored energy [J]
+  double energy{};                 ///< energy stored in the ring [J]
   double wave_generator_torque{};  ///< torque on the wave generator [N.m]
   double output_torque{};          ///< torque on the circular spline [N.m]
   double velocity_ratio{};         ///< output speed over motor speed at constant load [-]
@@ -195,16 +195,16 @@ struct RingResponse
 /// Friction of the ring in equilibrium, with respect to the speeds of motor and output.
 struct RingFrictionResponse
 {
-  /// number of groups of loaded flanks with similar sliding. The power of a group, sum_i |F_i| |slip_i . (motor speed,
-  /// output speed)| with the flanks' forces F_i, is exact if all its flanks slide in one direction
+  /// number of groups of loaded flanks with similar sliding. The friction power of a group, sum_i |F_i| |slip_i .
+  /// (motor speed, output speed)| over its flanks i with the forces F_i, is exact if all of them slide in one direction
   static constexpr int FLANK_GROUPS = 6;
   using Groups = Eigen::Array<double, FLANK_GROUPS, 1>;
 
-  double contact_force{};     ///< load of the wave generator's bearing: sum of the forces on all teeth [N]
+  double contact_force{};     ///< load of the wave generator's bearing: sum of its forces on all teeth [N]
   double ring_torque{};       ///< friction torque of outer race and flexing rim at the motor shaft [N.m]
   Eigen::Vector3d viscous;    ///< viscous matrix: motor-motor, motor-output, output-output [N.m.s/rad]
-  Groups flank_by_motor;      ///< for each group the sum of force times slip per motor speed [N.m]
-  Groups flank_by_output;     ///< for each group the sum of force times slip per output speed [N.m]
+  Groups flank_by_motor;      ///< for each group the sum of normal force times slip per motor speed [N.m]
+  Groups flank_by_output;     ///< for each group the sum of normal force times slip per output speed [N.m]
   Groups rms_slip_by_motor;   ///< for each group the root mean square slip per motor speed [m/rad]
   Groups rms_slip_by_output;  ///< for each group the root mean square slip per output speed [m/rad]
 };

@@ -9,8 +9,8 @@ namespace hjt
 enum class SolveCode
 {
   CONVERGED,        ///< out-of-balance forces are within solver.force_tolerance
-  ITERATION_LIMIT,  ///< solver.max_iterations was reached, even after the solver halved the path as often as allowed
-  NO_DESCENT,       ///< no step reduced the out-of-balance forces, even after the last allowed halving of the path
+  ITERATION_LIMIT,  ///< solver.max_iterations was reached, even after solver.max_step_cuts halvings of the move
+  NO_DESCENT,       ///< no step reduced the out-of-balance forces, even after solver.max_step_cuts halvings
   SINGULAR,         ///< the tangent matrix has no inverse
   NOT_FINITE,       ///< a value became NaN or infinite
   UNBALANCED,       ///< no output angle that the search reaches balances the load
@@ -26,17 +26,17 @@ enum class SolveStage
   FRICTION    ///< solution for the speeds after a step under dry friction
 };
 
-/// Outcome of a solve. The caller must check it.
+/// Outcome of a solve, which the caller must check.
 struct [[nodiscard]] SolveStatus
 {
   SolveCode code{ SolveCode::CONVERGED };  ///< how the solve ended
   SolveStage stage{ SolveStage::MOTION };  ///< task in which the solve ended
-  int iterations{};                        ///< Newton iterations of all attempts
-  int cuts{};                              ///< number of times that the solver halved the path
+  int iterations{};                        ///< number of Newton iterations in all attempts at this solve
+  int cuts{};                              ///< number of times that the solver halved the move
   int max_iterations{};                    ///< solver.max_iterations if the last attempt reached this limit; else 0
-  int jumps{};  ///< number of teeth that passed over a tip into another space, by ratcheting or in too long a move
-  double residual{};           ///< largest out-of-balance force component on a tooth [N]
-  double unbalanced_torque{};  ///< part of the load that the mesh did not balance [N.m]
+  int jumps{};        ///< number of teeth that passed over a tip into another space, by ratcheting or in one long move
+  double residual{};  ///< largest out-of-balance force component on a tooth [N]
+  double unbalanced_torque{};  ///< part of the load at the output that the mesh did not balance [N.m]
 
   bool ok() const noexcept { return code == SolveCode::CONVERGED; }  ///< whether the solve converged
 
@@ -52,6 +52,6 @@ struct [[nodiscard]] SolveStatus
 /// Name of the code as in the source, for example "NO_DESCENT".
 const char* nameOf(SolveCode code) noexcept;
 
-/// Message for the user, with the stage that failed, the code, the remaining forces and advice.
+/// Message for the user: the stage that failed, the code, the largest force or the torque out of balance, and advice.
 std::string explanationOf(const SolveStatus& status);
 }  // namespace hjt

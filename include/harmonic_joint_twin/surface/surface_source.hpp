@@ -14,14 +14,14 @@ struct SurfaceSource
 {
   std::string cache_directory;  ///< directory of stored surfaces, made if it is missing; empty: surfaces are not stored
   std::function<void(double)> progress{};  ///< called with the finished share of the build, 0 ... 1
-  /// called with the reason why there is no surface, or why it was not stored
+  /// called with the reason why there is no surface, or why the surface was not stored
   std::function<void(const std::string&)> notice{};
-  std::shared_ptr<SurfacePool> pool{};  ///< surfaces in memory, searched before the directory; may be null
-  /// whether another thread builds the surface, which calls `progress` and `notice`. The twin then solves the full ring
-  /// until the surface is built. The instant of the change to the surface depends on the computing time
+  std::shared_ptr<SurfacePool> pool{};  ///< surfaces in memory, which the twin tries before the directory; may be null
+  /// whether another thread builds the surface and calls `progress` and `notice`. The twin solves the full ring until
+  /// the surface is built. The instant at which the twin changes to the surface depends on the computing time
   bool background{};
 };
 
-/// Directory of the cache: $XDG_CACHE_HOME/harmonic_joint_twin or ~/.cache/harmonic_joint_twin; empty without HOME.
+/// $XDG_CACHE_HOME/harmonic_joint_twin or else ~/.cache/harmonic_joint_twin; empty without these variables and HOME.
 std::string surfaceCacheDirectory();
 }  // namespace hjt

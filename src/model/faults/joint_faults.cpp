@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Applies `change` to the value at a place, or to all values if the place is WHOLE_MEMBER.
+/// Applies `change` to values[place], or to all values if `place` is WHOLE_MEMBER.
 template <class Change>
 void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
 {
@@ -25,7 +25,7 @@ void atPlace(int place, Eigen::VectorXd& values, const Change& change) noexcept
   }
 }
 
-/// Crack in the rim behind a tooth, with a depth of `severity` times fault_scale.rim_crack_depth of the thickness.
+/// Cracks a segment of the rim to the depth of `severity` times fault_scale.rim_crack_depth of the rim's thickness.
 void crackRim(int segment, double severity, const Parameters& parameters, RingModel& ring) noexcept
 {
   const double left = 1.0 - severity * parameters.fault_scale.rim_crack_depth;
@@ -48,8 +48,8 @@ void crackFlexspline(const Fault& fault, const Parameters& parameters, JointMode
   }
 }
 
-/// Wear leaves a gap between rim and race and increases the friction between them. A single worn segment increases the
-/// friction by its share of the circumference.
+/// Wear leaves a gap between rim and race and increases the friction between them. Wear of a single segment increases
+/// the friction in proportion to the segment's share of the circumference.
 void wearInterface(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double part = fault.place == WHOLE_MEMBER ? 1.0 : 1.0 / parameters.gear.teeth_flexspline;
@@ -59,8 +59,8 @@ void wearInterface(const Fault& fault, const Parameters& parameters, JointModel&
                                  fault.severity * part * (parameters.fault_scale.interface_friction_factor - 1.0));
 }
 
-/// Without forces the rim would have waves e cos(n psi), which change its curvature by (n^2 - 1) e cos(n psi) / r^2,
-/// with the amplitude e, n waves in a turn, the angle psi of the tooth and the radius r.
+/// A buckled rim without forces has waves e cos(n psi), which change the curvature by (n^2 - 1) e cos(n psi) / r^2,
+/// with the amplitude e, n waves in a turn, the angle psi of a tooth and the radius r of the rim.
 void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -76,9 +76,9 @@ void buckle(const Fault& fault, const Parameters& parameters, JointModel& joint)
   joint.ring.edit<CupTorsion>().scaleWall(1.0 - fault.severity * scale.buckling_stiffness_loss);
 }
 
-/// Crack around the share x of the circumference. The remaining circumference carries the torque, so that the
+/// Cracks the cup around the share x of its circumference. The remaining circumference carries the torque, so that the
 /// compliance of the cracked section of the wall is multiplied by 1/(1 - x). `share`: compliance of this section over
-/// that of the wall [-]. The faces of the crack rub on each other.
+/// that of the whole wall, both without the crack [-]. The faces of the crack rub on each other.
 void crackCup(const Fault& fault, double share, const Parameters& parameters, JointModel& joint) noexcept
 {
   const double cracked = fault.severity * parameters.fault_scale.cup_crack_fraction;
@@ -105,13 +105,13 @@ void degradeLubricant(const Fault& fault, const Parameters& parameters, JointMod
 }
 
 /// Stiffness of a tooth pair over that of a sound pair [-]. `bending`: bending stiffness of the flexspline's tooth over
-/// that of a sound tooth; `share`: share of this bending in the compliance of a sound pair.
+/// that of a sound tooth; `share`: share of the tooth's bending in the compliance of a sound pair [-].
 double softened(double bending, double share) noexcept
 {
   return bending / (bending + share * (1.0 - bending));
 }
 
-/// Bending stiffness of a tooth, as a cantilever, whose thickness lost the share `loss`, over that of a sound tooth.
+/// Bending stiffness of a tooth that lost the share `loss` of its thickness over that of a sound tooth, as cantilevers.
 double thinned(double loss) noexcept
 {
   const double left = loss < 1.0 ? 1.0 - loss : 0.0;
@@ -119,7 +119,7 @@ double thinned(double loss) noexcept
 }
 
 /// Bending stiffness of a tooth over that of a sound tooth [-], if a crack along the middle has split the tooth from
-/// the tip over the share `length` of its height. The two leaves have half the thickness and bend four times as much.
+/// the tip over the share `length` of its height. Two leaves of half the thickness bend four times as much as a tooth.
 double split(double length) noexcept
 {
   return 1.0 / (1.0 + 3.0 * length * length * length);
@@ -129,7 +129,7 @@ void wearTeeth(const Fault& fault, const Parameters& parameters, JointModel& joi
   const GearParameters& gear = parameters.gear;
   const double across =
       fault.severity * parameters.fault_scale.tooth_wear_depth / std::cos(parameters.mesh.flank_angle);
-  // The tooth is half as thick as the pitch at mid-height.
+  // At mid-height the thickness of a tooth is half of the tooth pitch.
   const double thickness = PI * (gear.flexspline_inner_radius + gear.toothMidHeight()) / gear.teeth_flexspline;
   const double factor = softened(thinned(2.0 * across / thickness), parameters.fault_scale.tooth_compliance_share);
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -164,7 +164,7 @@ void pit(const Fault& fault, const Parameters& parameters, JointModel& joint) no
   atPlace(fault.place, joint.mesh_friction.toothFactor(), [&](double& factor) { factor *= friction; });
 }
 
-/// Damage by a jump of the teeth: worn tips, and a circular spline off the axis of the drive.
+/// Adds the damage by a jump of the teeth: worn tips, and a circular spline off the axis of the drive.
 void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   ToothMesh& mesh = joint.ring.edit<ToothMesh>();
@@ -172,7 +172,7 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
   mesh.tipLoss().array() += fault.severity * parameters.fault_scale.ratcheting_tip_loss;
 }
 
-/// The lobes wear because they carry the largest force. The smaller mean radius loosens the bearing's races.
+/// The lobes wear, because they carry the largest force. This reduces the mean radius and loosens the bearing's races.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;
@@ -224,7 +224,7 @@ struct Edit
 {
   FaultKind kind;
   void (*edit)(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
-  unsigned parts;  // changed parts, as bits of FaultPart
+  unsigned parts;  // parts of the joint that the fault changes, as bits of FaultPart
 };
 constexpr std::array EDITS{
   Edit{ FaultKind::INTERFACE_WEAR, wearInterface, GENERATOR_PART | FRICTION_PART },

@@ -11,12 +11,12 @@ namespace hjt
 /// their lengths and forces are added. docs/faults.md describes each kind of fault.
 void addFault(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept;
 
-/// Parts of the joint that a fault changes, as bits of partsOf.
+/// Parts of the joint that a fault can change. The result of partsOf has one bit for each part.
 enum FaultPart : unsigned
 {
   RIM_PART = 1,        ///< stiffness or free shape of the flexspline's rim
   CUP_PART = 2,        ///< wall of the flexspline's cup
-  MESH_PART = 4,       ///< teeth
+  MESH_PART = 4,       ///< teeth of the flexspline or the circular spline
   GENERATOR_PART = 8,  ///< wave generator, its bearing, or its contact with the rim
   FRICTION_PART = 16
 };
@@ -28,7 +28,7 @@ unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept;
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
 
 /// Joint with its active faults. Each change of the faults starts from the sound joint, so that a removed fault leaves
-/// no trace. Only the construction allocates.
+/// no trace. Only the constructor allocates memory.
 class JointFaults
 {
 public:
@@ -41,7 +41,7 @@ public:
   /// Replaces the faults of the joint by `faults`, which must be valid.
   void apply(const FaultList& faults) noexcept
   {
-    model_ = sound_;  // allocates nothing, because all vectors have equal sizes
+    model_ = sound_;  // allocates nothing, because the vectors of both models have equal sizes
     for (const ActiveFault& active : faults)
     {
       addFault(active.fault, parameters_, model_);

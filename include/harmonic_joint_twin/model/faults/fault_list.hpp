@@ -20,8 +20,8 @@ struct ActiveFault
 class FaultList
 {
 public:
-  /// Adds a fault, or changes the severity of the fault of this kind and place. The severity 0 removes the fault. An
-  /// unchanged fault keeps its time. @returns false and changes nothing if the list is full.
+  /// Adds a fault, or changes the severity of the fault of this kind and place. The severity 0 removes the fault. If
+  /// the severity does not change, the fault keeps its `since`. @returns false and changes nothing if the list is full.
   bool set(const Fault& fault, std::int64_t since) noexcept;
   void clear() noexcept  ///< removes all faults
   {
@@ -33,7 +33,7 @@ public:
   const ActiveFault* end() const noexcept { return faults_.data() + size_; }  ///< end of the faults
   std::size_t size() const noexcept { return size_; }                         ///< number of faults, 0 ... MAX_FAULTS
   bool empty() const noexcept { return size_ == 0; }                          ///< whether no fault is active
-  std::uint64_t version() const noexcept { return version_; }                 ///< changes whenever the list changes
+  std::uint64_t version() const noexcept { return version_; }                 ///< number that changes with the list
 
 private:
   std::array<ActiveFault, MAX_FAULTS> faults_{};
