@@ -4,7 +4,7 @@
 namespace hjt
 {
 /// Elimination of the unknowns of the ring's teeth. Four separators of two teeth each divide the ring into four arcs.
-/// Each of the four lanes of a vector eliminates one arc. The chains of operations are independent and need no shuffle.
+/// Each of the four lanes of a processor vector eliminates one arc. No value moves from one lane to another.
 ///
 /// In arrays of lanes, entry e of lane k has the index 4 e + k. The caller owns the arrays and aligns them to 32 bytes.
 namespace arcs
@@ -23,7 +23,7 @@ constexpr int BETWEEN_ENTRIES = 4 * BORDER;
 
 constexpr int SCHUR = 4 * COUNT;  ///< number of unknowns of the separators
 
-/// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k, whose separator is the two teeth before its arc.
+/// Layout of the arcs. Step t eliminates tooth first[k] + t in lane k. The two teeth before an arc are its separator.
 struct Layout
 {
   int steps;         ///< length of the longest arc [teeth]
@@ -38,14 +38,14 @@ struct Tangent
   const double* diagonal[3];  ///< block of each tooth with itself: xx, xy, yy
   const double* next[4];      ///< block of each tooth with the next tooth: xx, xy, yx, yy
   const double* second[4];    ///< block of each tooth with the second next tooth: xx, xy, yx, yy
-  const double* cup;          ///< couplings to the cup: x and y of each tooth
+  const double* cup;          ///< couplings of x and y of each tooth to the cup
 };
 
 struct Sums
 {
   double* before;  ///< BEFORE_ENTRIES sums for the preceding separator and the cup: upper triangle by columns
-  /// AFTER_ENTRIES sums for the next separator: xx, xy, yy of its first tooth; xx, xy, yx, yy of both; xx, xy, yy of
-  /// its second tooth
+  /// AFTER_ENTRIES sums for the next separator: xx, xy, yy of its first tooth; xx, xy, yx, yy between its teeth; xx,
+  /// xy, yy of its second tooth
   double* after;
   double* between;  ///< BETWEEN_ENTRIES sums: four rows of the next separator by BORDER columns
 };
@@ -68,7 +68,8 @@ struct Kernels
   void (*forward[3])(const Layout& layout, const double* factors, const double* const* b, double* rows, double* before,
                      double* after);
 
-  /// Computes the solutions of the arcs from those of the separators. `before`, `after`: solutions of the separators.
+  /// Computes the solutions of the arcs from those of the separators. `before`, `after`: solutions of the separators
+  /// before (with the cup) and after each arc.
   void (*backward[3])(const Layout& layout, const double* factors, const double* rows, const double* before,
                       const double* after, double* const* x);
 
@@ -82,8 +83,8 @@ struct Kernels
 
 extern const Kernels BASELINE;  ///< kernels for every processor of the architecture
 #ifdef HJT_AVX2
-extern const Kernels AVX2;    ///< x86-64 with AVX2
-extern const Kernels AVX512;  ///< x86-64 with AVX-512 VL and DQ: vectors as long as in AVX2, twice as many registers
+extern const Kernels AVX2;    ///< kernels for x86-64 with AVX2
+extern const Kernels AVX512;  ///< for AVX-512 VL and DQ: vectors as long as in AVX2, twice as many registers
 #endif
 
 /// Kernels of the fastest kind that this processor supports.

@@ -16,11 +16,11 @@ namespace hjt
 /// teeth on each side, plus the rank-one term of the cup.
 ///
 /// Four separators of two teeth each divide the ring into arcs, which are eliminated simultaneously (arc_elimination)
-/// while the separators are fixed. A dense system of 17 unknowns remains: the separators and the cup's multiplier,
-/// which is eliminated first. If the ring is stable, the remaining matrix is positive definite and needs no pivoting.
-/// If not, the solver pivots. Without the cup the ring turns almost freely in the wave generator. A rank-one correction
-/// for the cup after the elimination would therefore lose all digits. The solver's cost is linear in the number of
-/// teeth. Only the constructor allocates.
+/// while the separators are fixed. A dense system of 17 unknowns remains: 16 of the separators and the cup's
+/// multiplier. The multiplier is eliminated first. If the ring is stable, the remaining matrix is positive definite and
+/// needs no pivoting. If the ring is unstable, the solver pivots. Without the cup the ring turns almost freely in the
+/// wave generator. A rank-one correction for the cup after the elimination would therefore lose all digits. The
+/// solver's cost is linear in the number of teeth. Only the constructor allocates.
 class CyclicSolver
 {
 public:
@@ -72,7 +72,7 @@ private:
   Entries factors_;                         // never empty, because the kernels get a pointer to the first entry
   Entries rows_;
   arcs::SchurFactors schur_;  // factors of the matrix of the separators after elimination of the cup
-  Separators cup_;            // column of the cup's multiplier in that matrix
+  Separators cup_;            // column of the cup's multiplier in the matrix of the separators
   double cup_inverse_{};      // inverse of the pivot of the cup's multiplier
   bool pivoting_{};
   Eigen::PartialPivLU<SchurWithCup> lu_;  // factors with pivoting, used if the ring is unstable

@@ -20,8 +20,8 @@ constexpr double MOVING = 30.0;
 constexpr double MIN_WIDTH = 1e-100;  // width for a term without slip: its square and its inverse are finite
 
 /// Length of the step from `v` along `change`: 1 if the function still falls at the end of `change`, else a length at
-/// which its slope is at most `flat` times the slope at `v` [-]. The search compares slopes only, because values near a
-/// minimum differ by less than their rounding. `slope` receives the gradient at the end of the step.
+/// which the function's slope is at most `flat` times that at `v` [-]. The search compares slopes only, because values
+/// near a minimum differ by less than their rounding. `slope` receives the gradient at the end of the step.
 template <class Gradient>
 double searchLine(Gradient& gradient, const Eigen::Vector2d& v, const Eigen::Vector2d& change, double flat,
                   Eigen::Vector2d& slope)
@@ -67,8 +67,8 @@ double shaftStrength(const JointFriction& friction) noexcept
 }
 
 /// Solves s + most r = free with r = s / sqrt(s^2 + e^2) for the slip s of one term. `free`: slip without this term's
-/// friction; `most`: largest change of the slip by this friction; `e`: width of its regularisation. `share` receives r.
-/// @returns false if a few steps do not converge.
+/// friction; `most`: largest change of the slip by this friction; `e`: width of the regularisation. `share` receives r.
+/// @returns false if the iteration does not converge.
 bool solveSlip(double free, double most, double e, double& share)
 {
   constexpr int MAX_ITERATIONS = 12;
@@ -91,8 +91,8 @@ bool solveSlip(double free, double most, double e, double& share)
   return false;
 }
 
-/// The few terms of friction that continue to slide in a step. DryFriction::slide is compiled for each kind of
-/// processor, with the functions of this class inlined.
+/// Terms of friction that continue to slide in a step. DryFriction::slide is compiled for each kind of processor, with
+/// the functions of this class inlined.
 class SlidingTerms
 {
 public:
@@ -100,11 +100,11 @@ public:
   struct Stops
   {
     double number{};
-    double places{};  // sum of their indices
+    double places{};  // sum of the indices of these terms
   };
 
-  /// Stores the terms. `strength` receives their total friction on motor and output, against the old slips [N.m].
-  /// @returns false if `terms` is empty or has more than MAX_TERMS terms.
+  /// Stores the terms. `strength` receives the sum of their torques on motor and output, with the signs of the old
+  /// slips [N.m]. @returns false if `terms` is empty or has more than MAX_TERMS terms.
   inline __attribute__((always_inline)) bool take(const FrictionTerms& terms, const Eigen::Vector2d& old_speeds,
                                                   double follow, double width, Eigen::Vector2d& strength)
   {
@@ -154,7 +154,7 @@ public:
     return by_motor_[place] * old_speeds[0] + by_output_[place] * old_speeds[1] >= MOVING / SLIDING * least_[place];
   }
 
-  /// Removes a term. @returns the sign of its old slip.
+  /// Removes the term at `place`. @returns the sign of the term's slip before the step.
   double leaveOut(int place)
   {
     least_[static_cast<std::size_t>(place)] = -HUGE_VAL;
@@ -167,14 +167,14 @@ private:
 
   int count_{};
   alignas(32) Numbers sense_;
-  alignas(32) Numbers by_motor_;   // slip per motor speed, with the sign that makes the old slip positive
-  alignas(32) Numbers by_output_;  // slip per output speed, with the sign that makes the old slip positive
+  alignas(32) Numbers by_motor_;   // slip per motor speed, with the sign that makes the slip before the step positive
+  alignas(32) Numbers by_output_;  // slip per output speed, with the sign that makes the slip before the step positive
   alignas(32) Numbers least_;      // least slip of a term that continues to slide
 };
 }  // namespace
 
-/// Width of the regularisation, the slip speed at which a term has 71 % of its friction. It is the sum of the slips by
-/// the motor speed `stiction_velocity` and by the output speed that belongs to it.
+/// Width of the regularisation, the slip speed at which a term has 71 % of its friction. The width is the sum of the
+/// slips by the motor speed `stiction_velocity` and by the output speed at this motor speed.
 double DryFriction::width(const FrictionTerm& term, double velocity_ratio) const noexcept
 {
   return width_ * (std::abs(term.slip[0]) + std::abs(velocity_ratio * term.slip[1])) + MIN_WIDTH;
@@ -220,7 +220,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
   constexpr double ENOUGH = 1e-12;  // relative change of the speeds that ends the iteration
   constexpr double ROUNDED = 1e-9;  // relative change that counts as rounding of the speeds
   constexpr double FLAT = 0.1;      // slope at the end of a line search over the slope at its start
-  constexpr double FLATTER = 1e-3;  // this ratio for a line search that must end at a kink, where a term sticks
+  constexpr double FLATTER = 1e-3;  // FLAT for a line search that must end at a kink, where a term sticks
   Eigen::Matrix2d linear = 0.5 * step * friction.viscous;
   const Eigen::Vector2d drag = linear * old_speeds - inertia_.cwiseProduct(free_speeds);
   linear.diagonal() += inertia_;
@@ -232,7 +232,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return linear * v + drag + step * dry.first;
   };
 
-  // Minimises over both speeds or, without `motor_free`, over the output's speed.
+  // Minimises the function over both speeds or, without `motor_free`, over the output's speed alone.
   Eigen::Vector2d slope;
   const auto descend = [&](Eigen::Vector2d& v, bool motor_free)
   {
@@ -252,7 +252,7 @@ bool DryFriction::solve(const JointFriction& friction, double velocity_ratio, co
     return !changes(ROUNDED);
   };
 
-  // Sets the motor at rest. Returns whether the friction on its shaft can hold it.
+  // Sets the motor at rest. Returns whether the friction on the motor's shaft can hold the motor.
   const auto rests = [&](Eigen::Vector2d& v)
   {
     v[0] = 0.0;
@@ -296,7 +296,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   {
     return false;
   }
-  if (stops.number > 0.0)  // a term that does not slide: its share of friction is the unknown
+  if (stops.number > 0.0)  // one term does not slide; the share of its strength is the unknown
   {
     const auto nearest = static_cast<int>(stops.places);
     const FrictionTerm term = friction.terms[nearest];
@@ -304,7 +304,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
     const Eigen::Vector2d response = answer(term.slip);
     v += strongest * sliding.leaveOut(nearest) * response;    // speeds without the friction of this term
     const double most = strongest * term.slip.dot(response);  // slip that the friction of this term can remove
-    double share = 0.0;                                       // share of its strength that this term has
+    double share = 0.0;                                       // share of the strength of this term that acts
     if (!solveSlip(term.slip.dot(v), most, width(term, velocity_ratio), share))
     {
       return false;
@@ -323,7 +323,7 @@ HJT_VECTOR_CLONES bool DryFriction::slide(const JointFriction& friction, double 
   return true;
 }
 
-/// Whether any term that slides at the speeds `before` is at rest or slides the other way at the speeds `after`.
+/// Whether any term that slides at the speeds `before` is at rest or slides backwards at the speeds `after`.
 HJT_VECTOR_CLONES bool DryFriction::anyStops(const FrictionTerms& terms, double follow, const Eigen::Vector2d& before,
                                              const Eigen::Vector2d& after) const noexcept
 {
@@ -349,8 +349,8 @@ KickedSpeeds DryFriction::stopOrSlide(const JointFriction& friction, double velo
                                       const Eigen::Vector2d& old_speeds, const Eigen::Vector2d& free_momentum,
                                       double step, JointFriction& sticking) const noexcept
 {
-  constexpr int MAX_PARTS = 16;  // parts of a step; teeth stop one after the other, up to ten in a step
-  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // change without friction [rad/s]
+  constexpr int MAX_PARTS = 16;  // largest number of parts of a step; up to ten teeth stop in a step
+  const Eigen::Vector2d gained = free_momentum.cwiseQuotient(inertia_) - old_speeds;  // gain without friction [rad/s]
   KickedSpeeds speeds{ old_speeds, old_speeds };
   double rest = 1.0;  // remaining share of the step [-]
   const auto go_on = [&](double share, const Eigen::Vector2d& to)

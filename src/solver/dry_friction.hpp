@@ -21,9 +21,9 @@ struct KickedSpeeds
 /// where  v_free  speeds without friction, v_old  speeds before the step [rad/s]; h  length of the step [s]
 ///        M  inertias, D  viscous matrix; c_j  strength and a_j  slip of dry term j; e_j  width of its regularisation
 ///
-/// The function is convex and has one minimum, so friction sticks, slides and reverses without a change of mode. e_j
-/// rounds the kink at rest over slips at the motor speed `stiction_velocity`. The method is Newton's with line search.
-/// If the friction on the motor's shaft can hold the motor, the motor's speed becomes exactly zero.
+/// The function is convex and has one minimum, so friction sticks, slides and reverses without a change of mode. e_j,
+/// the slip at the motor speed `stiction_velocity`, rounds the kink of the friction at rest. The method is Newton's
+/// with line search. If the friction on the motor's shaft can hold the motor, the motor's speed becomes exactly zero.
 class DryFriction
 {
 public:
@@ -42,14 +42,14 @@ public:
                            const Eigen::Vector2d& free_speeds, double step, Eigen::Vector2d& speeds) const noexcept;
 
   /// Computes the speeds like `solve`. If a sliding term stops within the step, the step is divided at this instant.
-  /// Until then terms at rest stick. `free_momentum`: M v_free [N.m.s]; `sticking`: working memory.
+  /// Terms at rest stick until this instant. `free_momentum`: M v_free [N.m.s]; `sticking`: working memory.
   KickedSpeeds stopOrSlide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
                            const Eigen::Vector2d& free_momentum, double step, JointFriction& sticking) const noexcept;
 
-  /// Computes the speeds like `solve` in the case that all terms, or all except one, slide far from rest in their old
-  /// direction. The problem is then linear with at most one unknown. @returns false and does nothing in other cases,
-  /// for example at rest. The result differs from that of `solve` by less than 1e-9 of the friction, because `slide`
-  /// neglects the regularisation of sliding terms. `free_momentum`: M v_free [N.m.s].
+  /// Computes the speeds like `solve` if all terms, or all except one, slide far from rest in the same direction as
+  /// before the step. The problem is then linear with at most one unknown. @returns false and does nothing in other
+  /// cases, for example at rest. The result differs from that of `solve` by less than 1e-9 of the friction, because
+  /// `slide` neglects the regularisation of sliding terms. `free_momentum`: M v_free [N.m.s].
   bool slide(const JointFriction& friction, double velocity_ratio, const Eigen::Vector2d& old_speeds,
              const Eigen::Vector2d& free_momentum, double step, Eigen::Vector2d& speeds) const noexcept;
 

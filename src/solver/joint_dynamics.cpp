@@ -211,8 +211,8 @@ double JointDynamics::accept() noexcept
   return slipped;
 }
 
-/// Whether the present angles are well within the edges of the surface and the surface has the torque of the full ring
-/// there. After a jump of teeth the torques differ.
+/// Whether the present angles are well within the edges of the surface and the torques of surface and full ring agree
+/// at these angles. After a jump of teeth they differ.
 bool JointDynamics::surfaceAgrees() const noexcept
 {
   constexpr double MARGIN = 0.05;   // least distance from the edges, as a share of the surface's range [-]
@@ -304,7 +304,7 @@ void JointDynamics::operator()(const JointState& x, JointState& rate, double) no
   {
     return;
   }
-  // The torque of the current is a state of the joint if the current lags; if not, it is the limited command.
+  // The torque of the current is a state of the joint if the current lags; else it is the limited command.
   drive_torque =
       model_->motor.currentRate() > 0.0 ? x[DRIVE_TORQUE] : model_->motor.limited(inputs.motor_torque, x[MOTOR_SPEED]);
   updateFriction(speeds);

@@ -43,9 +43,9 @@ public:
   /// Inserts the wave generator and balances the output's load with the motor at angle 0.
   SolveStatus solveAtRest() noexcept;
 
-  /// Uses this surface for angles in its range, and the full ring for other angles. `surface`: null for the full ring
-  /// alone; it must outlive its use. @returns false if the full ring has no equilibrium at the present angles on the
-  /// surface. Angles and torques then stay, although the full ring is at other angles.
+  /// Uses `surface` for angles in its range, and the full ring for other angles. `surface`: null for the full ring
+  /// alone; must outlive its use. @returns false if the full ring has no equilibrium at the present angles on the
+  /// surface. The joint then keeps its angles and torques, although the full ring is at other angles.
   [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
   /// Solves the full ring at the present angles. Must be called after a change of the model.
@@ -63,8 +63,8 @@ public:
   /// stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
-  /// Takes the equilibrium from the surface if the joint is on the surface, or if surface and ring agree. @returns
-  /// false and does nothing in other cases.
+  /// Takes the equilibrium from the surface if the joint is on the surface, or if the torques of surface and ring
+  /// agree. @returns false and does nothing otherwise.
   bool placeOnSurface(double motor_angle, double output_angle) noexcept;
 
   /// Makes the internal state of the friction at the present angles the start of the next motion. @returns the energy
@@ -77,10 +77,10 @@ public:
     return model_->torque(response_, position(), shaftTorque(), inputs.load()) - now_.cup.torque * cup_rates_;
   }
 
-  /// Torque of the motor at the temperature of its magnets, without ripple [N.m].
+  /// Torque of the motor without ripple, with the magnets at the temperature of the grease [N.m].
   double shaftTorque() const noexcept { return drive_torque * model_->motor.torqueFactor(inputs.temperature); }
 
-  /// Torque of the motor with ripple at the present angle [N.m]. driveGain: its ratio to the torque of the current [-].
+  /// Torque of the motor with ripple at the present angle [N.m]. driveGain: this torque per torque of the current [-].
   double driveTorque() const noexcept { return model_->motor.rippled(shaftTorque(), motor_angle_); }
   double driveGain() const noexcept
   {
@@ -134,7 +134,7 @@ public:
   double storedEnergy() const noexcept { return model_->storedEnergy(response_, position()) + now_.cup.energy; }
 
   JointInputs inputs;
-  double drive_torque{};  ///< torque of the motor's current at 25 degC, after limit and lag [N.m]
+  double drive_torque{};  ///< torque of the motor's current at 25 degC, after torque limit and lag [N.m]
   SolveStatus status;     ///< reason of the last failed solve and effort of all solves since the caller cleared it
 
 private:
@@ -175,7 +175,7 @@ private:
   JointFriction sticking_;      // working memory: friction of the terms that stick
   bool remembers_;              // whether the friction has a state
   Memory accepted_;
-  Memory now_;  // state at the present angles
+  Memory now_;  // state of the friction at the present angles
   // derivatives of the rim's mean rotation by motor and output angle, if the cup's friction has a state [-]
   Eigen::Vector2d cup_rates_{ 0.0, 0.0 };
   double temperature_;  // temperature for which viscosity_ is valid [degC]

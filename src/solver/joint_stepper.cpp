@@ -13,8 +13,8 @@ namespace hjt
 {
 namespace
 {
-/// Mean magnitudes of the speeds over a kick, with the sign of `before`, for the strength of friction [rad/s]. The
-/// speeds are extrapolated from those at the kick's beginning (`before`) and half a kick earlier (`earlier`).
+/// Mean magnitudes of the speeds over a kick (see Leapfrog), with the sign of `before`, for the strength of friction
+/// [rad/s]. Speeds at the kick's beginning (`before`) and half a kick earlier (`earlier`) are extrapolated.
 Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector2d& earlier) noexcept
 {
   Eigen::Vector2d mean;
@@ -70,7 +70,7 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
 }
 
 /// Speeds after a kick by the torques `others` (see `fade`) and by the motor. The motor either has its whole torque
-/// `full` [N.m] or reduces it by the speed at the kick's end. The case at the kick's beginning is tried first.
+/// `full` [N.m] or reduces it by the speed at the kick's end. First the case at the kick's beginning is tried.
 KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
                    const Eigen::Vector2d& before, double dt) noexcept
 {
@@ -119,8 +119,8 @@ KickedSpeeds Leapfrog::kick(JointDynamics& system, JointState& x, const Eigen::V
   return speeds;
 }
 
-/// Whether a jump of the inputs since the last kick requires `retake`. A lagging current does not jump. The arm's
-/// torque is not compared, because it belongs to the end of a step.
+/// Whether a jump of the inputs since the last kick requires `retake`. A lagging current does not jump with the
+/// command. The arm's torque is not compared, because it belongs to the end of a step.
 bool Leapfrog::actOtherwise(const JointDynamics& system) const noexcept
 {
   const JointInputs& now = system.inputs;
@@ -164,7 +164,7 @@ void Leapfrog::do_step(JointDynamics& system, JointState& x, double, double dt) 
   x.segment<3>(MOTOR_WORK) += until + rest_;
 }
 
-/// Works of motor, load and friction in the last kick over half a step at these speeds, in the order of the state [J].
+/// Works of motor, load and friction in the last kick over half a step at `speeds`, in the order of the state [J].
 Eigen::Vector3d Leapfrog::works(const JointDynamics& system, const Eigen::Vector2d& speeds, double dt) const noexcept
 {
   return 0.5 * dt *
@@ -189,7 +189,7 @@ void Leapfrog::retake(JointDynamics& system, JointState& x, double dt) noexcept
   // The works were computed with the mean speed of the kick. If a friction term stopped within the kick, the speed in
   // the middle of the kick differs from this mean.
   x[DISSIPATED] += 0.5 * inertia_.dot(speeds_.cwiseAbs2() - halfway_.cwiseAbs2());
-  // If an arm changed the output's inertia, the kinetic energy changed at the speeds that are now undone.
+  // If an arm changed the output's inertia, the kinetic energy changed at the speeds that `retake` undoes.
   x[LOAD_WORK] += 0.5 * (inertia - inertia_).dot(x.segment<2>(MOTOR_SPEED).cwiseAbs2() - halfway_.cwiseAbs2());
   speeds_ = halfway_;
 
@@ -278,10 +278,10 @@ double JointStepper::frequency(double output_inertia) const noexcept
   return std::sqrt(stiffest_ / output_inertia + motor_square_);
 }
 
-/// `phase`: phase of the fastest oscillation of motor against output in an undivided step [rad].
+/// Number of substeps. `phase`: phase of the fastest oscillation of motor against output in an undivided step [rad].
 int JointStepper::substepsFor(double phase) const noexcept
 {
-  constexpr double LENGTH = 1e-4;  // longest substep of a divided step, for contacts and friction [s]
+  constexpr double LENGTH = 1e-4;  // longest substep of a divided step that suits contacts and friction [s]
   if (phase <= phase_limit_)
   {
     return 1;
@@ -329,7 +329,7 @@ void JointStepper::setOutputInertia(double inertia) noexcept
   dynamics_.setOutputInertia(inertia);
 }
 
-/// Increases the number of substeps if their phase exceeds `phase_limit_`. Reduces it if fewer ones meet AIM.
+/// Raises the number of substeps if their phase exceeds `phase_limit_`. Reduces it if fewer substeps meet AIM.
 void JointStepper::divideAgain(double output_inertia) noexcept
 {
   const double phase = frequency(output_inertia) * step_;

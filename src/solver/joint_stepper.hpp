@@ -43,7 +43,7 @@ public:
   /// Friction torque of the last kick on motor and output [N.m].
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }
 
-  /// Motor work - load work - dissipated - kinetic energy at the instant of the angles [J].
+  /// Work of the motor - work on the load - dissipated - kinetic energy, at the instant of the angles [J].
   double balance() const noexcept { return balance_; }
 
   /// Work on the load plus kinetic energy of the output, at the instant of the angles [J].
@@ -78,10 +78,10 @@ private:
   Eigen::Vector2d half_kick_{ 0.0, 0.0 };  // change of the speeds in the second half of the last kick [rad/s]
   /// The energy account computes the kinetic energy at an instant from the product of the speeds half a step before and
   /// half a step after the instant. A repeated half kick changes this product, although the speeds at the instant stay.
-  /// This is the sum of the changes, for motor and output [J].
+  /// `retaken_` is the sum of these changes, for motor and output [J].
   Eigen::Vector2d retaken_{ 0.0, 0.0 };
   JointInputs acted_;  // inputs of the last kick
-  bool moves_{};       // whether the speeds are half a step ahead, because there was a kick
+  bool moves_{};       // whether the speeds are half a step ahead of the angles, because there was a kick
 };
 
 /// Integrates the joint by the leapfrog in equal steps and keeps its energy account.
@@ -91,14 +91,14 @@ public:
   /// Largest phase of an oscillation in a substep [rad]. The phase of the leapfrog is then ahead of the exact one by
   /// phase^2 / 24 = 0.04 %, so that the error after four oscillations is a hundredth of the amplitude.
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
-  /// MAX_PHASE_ADVANCE of a joint in an arm [rad]. The leapfrog is then ahead by 0.7 %, but only in the modes of light
-  /// links at some kHz, which nothing in the arm excites.
+  /// MAX_PHASE_ADVANCE of a joint in an arm [rad]. The phase of the leapfrog is then ahead by 0.7 %, but only in modes
+  /// of light links at some kHz, which nothing in the arm excites.
   static constexpr double MAX_PHASE_ADVANCE_IN_ARM = 0.4;
   static constexpr int MAX_SUBSTEPS = 31;
   /// Largest speed of an output that counts as at rest [rad/s]. If only the regularised friction of the flanks holds
   /// the output, it creeps with up to 8e-7 rad/s at the shipped stiction_velocity.
   static constexpr double REST_SPEED = 2e-6;
-  static constexpr double REST_TIME = 0.1;  ///< [s]
+  static constexpr double REST_TIME = 0.1;  ///< time at rest after which `step` solves nothing [s]
 
   /// @throws ParameterError if the step is too long for the stiffest motion of the joint.
   JointStepper(const Parameters& parameters, const JointModel& model);
@@ -117,8 +117,8 @@ public:
   /// loop limit and delay the wanted torque. @returns false if the ring did not converge; the joint then rests.
   ///
   /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal substeps.
-  /// Parameters and an arm's inertia determine their number, so that live and offline runs are equal. The number is
-  /// odd. A new torque of the arm then acts from the middle of the step on, as in an undivided step.
+  /// Parameters and an arm's inertia determine the number of substeps, so that live and offline runs are equal. The
+  /// number is odd, so that a new torque of the arm acts from the middle of the step on, as in an undivided step.
   ///
   /// A joint at rest (motor stuck, output slower than REST_SPEED for REST_TIME) is not solved until an input changes.
   bool step(const JointInputs& inputs) noexcept;
@@ -139,7 +139,7 @@ public:
   double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< speeds of motor and output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< see Leapfrog::frictionTorque
-  /// torque of the current at 25 degC [N.m]
+  /// torque of the motor's current at 25 degC [N.m]
   double driveTorque() const noexcept { return x_[joint_state::DRIVE_TORQUE]; }
   /// Whether the speed limit reduces the motor's torque.
   bool isSpeedLimited() const noexcept
@@ -153,7 +153,7 @@ public:
   int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
   /// Phase of the fastest oscillation of motor against output in a substep, at the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
-  bool isCoarse() const noexcept;  ///< whether phaseAdvance() exceeds MAX_PHASE_ADVANCE or its value in an arm
+  bool isCoarse() const noexcept;  ///< whether phaseAdvance() exceeds MAX_PHASE_ADVANCE (in an arm: ..._IN_ARM)
   /// Work on load and arm plus kinetic energy of the output since the reset [J].
   double deliveredEnergy() const noexcept { return leapfrog_.deliveredEnergy(); }
   double linkTorque() const noexcept { return leapfrog_.linkTorque(); }    ///< see Leapfrog::linkTorque
@@ -171,8 +171,8 @@ private:
 
   int rest_steps_{};  // number of successive steps at rest
   int substeps_{ 1 };
-  double step_;     // [s]
-  double substep_;  // [s]
+  double step_;     // length of a step [s]
+  double substep_;  // length of a substep [s]
   double phase_limit_{ MAX_PHASE_ADVANCE };
   double stiffest_{};      // stiffest slope of the cup, with its friction [N.m/rad]
   double motor_square_{};  // motor's part of the squared frequency of the fastest oscillation [rad^2/s^2]
@@ -182,8 +182,8 @@ private:
   Eigen::Vector2d speeds_{ 0.0, 0.0 };
   Eigen::Vector2d friction_{ 0.0, 0.0 };
   double balance_{};          // motor work - load work - dissipated energy - kinetic energy [J]
-  double stored_at_start_{};  // [J]
-  double released_{};         // [J]
+  double stored_at_start_{};  // stored energy at the reset [J]
+  double released_{};         // energy released by changes of the model since the reset [J]
   double throughput_{};
 };
 }  // namespace hjt

@@ -308,7 +308,7 @@ SolveCode NewtonSolver::iterate(const EquilibriumGoal& goal, RingLinearisation& 
                                 EnergyDescent* descent, SolveStatus& status) noexcept
 {
   constexpr double GOOD_CONTRACTION = 0.1;  // largest ratio of successive forces for a second use of the factors [-]
-  constexpr int DESCENT = 5;  // factor on the iterations: every few teeth that begin or end contact need one
+  constexpr int DESCENT = 5;  // factor on the iterations; every few contacts that begin or end need an iteration
   const int max_iterations = (descent != nullptr ? DESCENT : 1) * max_iterations_;
   bool fresh = false;
   while (std::isfinite(status.residual))

@@ -29,7 +29,7 @@ public:
   bool refactor(const RingState& state) noexcept;
 
   /// Whether the slopes in the tangent changed: either the cup is on another slope than for the rates of `state`, or a
-  /// contact began or ended since `refactor`. `all_teeth`: counts all contacts of teeth, not only those with balls.
+  /// contact began or ended since `refactor`. `all_teeth`: whether contacts of teeth with flanks count too.
   bool slopesChanged(const RingState& state, bool all_teeth) const noexcept;
   /// Whether the slopes changed since `refactor`.
   bool slopesChanged(bool all_teeth) const noexcept;
@@ -111,7 +111,7 @@ struct EquilibriumGoal
 };
 
 /// Newton's method on the forces of the ring with the analytic tangent and a line search. The method uses the factors
-/// of a tangent again if the forces decrease fast.
+/// of a tangent again if the largest force decreased to a tenth in the last step.
 class NewtonSolver
 {
 public:

@@ -165,7 +165,7 @@ void ResponseSurface::Tables::locate(double pitches, double v, Cells& cells) con
   }
 }
 
-/// `part`: position within the pitch, 0 ... 1 [-].
+/// Finds the cell of the deviations. `part`: position within the pitch, 0 ... 1 [-].
 void ResponseSurface::Tables::locateDeviation(std::int64_t pitch, double part, double v, Cells& cells) const noexcept
 {
   const auto count = static_cast<std::int64_t>(deviations.pitches.size());
@@ -254,7 +254,7 @@ RingResponse ResponseSurface::response(const Place& place, Eigen::Vector2d& hous
   return response;
 }
 
-/// Weights the values of the first share and adds the weighted values of the other shares.
+/// Multiplies the values of the first share by its weight and adds the weighted values of the other shares.
 void ResponseSurface::addOthers(const Place& place, SurfaceEnergy& energy, RingResponse& response) const noexcept
 {
   energy *= place.weight;

@@ -27,15 +27,15 @@ public:
     ENERGY,                    // U [J]
     ENERGY_BY_U,               // dU/du, u in pitches [J]
     ENERGY_BY_V,               // dU/dv [J/rad]
-    ENERGY_BY_UV,              // [J/rad]
+    ENERGY_BY_UV,              // second derivative of U by u and v [J/rad]
     BILINEAR,                  // index of the first bilinear value
-    CONTACT_FORCE = BILINEAR,  // [N]
+    CONTACT_FORCE = BILINEAR,  // sum of the wave generator's forces on all teeth [N]
     RING_TORQUE,               // friction torque of outer race and flexing rim at the motor [N.m]
     VISCOUS,                   // viscous matrix: motor-motor, motor-output, output-output [N.m.s/rad]
     FLANKS = VISCOUS + 3,      // torque (2 values [N.m]) and rms slip (2 values [m/rad]) of each group of flanks
-    VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // [-]
-    OUTPUT_STIFFNESS,                                                  // [N.m/rad]
-    TEETH_LOADED,                                                      // [-]
+    VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // see RingResponse [-]
+    OUTPUT_STIFFNESS,                                                  // see RingResponse [N.m/rad]
+    TEETH_LOADED,                                                      // number of teeth that carry mesh force [-]
     LOBE_FORCE,                                                        // mesh force of each lobe [N]
     VALUES = LOBE_FORCE + 2
   };
@@ -195,8 +195,8 @@ private:
 class ResponseSurface
 {
 public:
-  /// `table`: at least two lines. `deviations`: the lines of each pitch span those of the table. `balls`: changes by
-  /// the balls if the bearing is faulty.
+  /// `table`: at least two lines. `deviations`: the lines of each pitch span those of the table. `balls`: changes of
+  /// the ring by dropping balls, if the bearing is faulty.
   explicit ResponseSurface(SurfaceTable table, DeviationTable deviations = {}, std::optional<BallDrops> balls = {});
 
   static constexpr std::size_t MAX_SHARES = 4;
@@ -205,7 +205,7 @@ public:
   struct Share
   {
     std::shared_ptr<const ResponseSurface> surface;  ///< surface without shares and balls
-    double weight{};                                 ///< [-]
+    double weight{};                                 ///< weight of this surface in the sum [-]
   };
 
   /// `shares`: one to MAX_SHARES surfaces of gears with equal numbers of teeth, with weights whose sum is 1. The range
@@ -217,7 +217,7 @@ public:
   {
     SurfaceCell cell;
     SurfaceCell deviation;  ///< cell of the deviations; empty: no deviation at this position
-    bool lobes_swapped{};   ///< whether the lobes have exchanged their places since the deviations were solved
+    bool lobes_swapped{};   ///< whether the lobes are exchanged compared with those of the solved deviations
     double weight{ 1.0 };   ///< weight of these values in the sum of the shares
 
     double value(int which) const noexcept
@@ -235,7 +235,7 @@ public:
     std::size_t other_count{};
   };
 
-  /// Finds the position of two angles. @returns false and does nothing outside the table or for an angle that is NaN.
+  /// Finds the place of two angles [rad] in the table. @returns false and does nothing outside the table or for NaN.
   bool locate(double motor_angle, double output_angle, Place& place) const noexcept;
 
   /// Whether the distance of a position from an end of the range of v is less than `share` times the range.
@@ -245,7 +245,7 @@ public:
            place.at > highest() - share * (highest() - lowest());
   }
 
-  /// `housing_stiffness`: derivatives of the torque between ring and housing by motor and output angle [N.m/rad].
+  /// Response at a place. `housing_stiffness`: derivatives of the torque on the housing by both angles [N.m/rad].
   RingResponse response(const Place& place, Eigen::Vector2d& housing_stiffness) const noexcept;
   RingResponse response(const Place& place) const noexcept
   {

@@ -39,8 +39,8 @@ RingEquilibrium::RingEquilibrium(const RingModel& model, const SolverParameters&
 {
 }
 
-/// In the shipped gear the rounding error is a thousandth of the shipped tolerance. It limits the tolerance only in a
-/// gear with a much stiffer rim or much finer teeth.
+/// Value of rounding() [N]. In the shipped gear this force is a thousandth of the shipped tolerance. It limits the
+/// tolerance only in a gear with a much stiffer rim or much finer teeth than the shipped gear.
 double RingEquilibrium::measureRounding() noexcept
 {
   system_.updateForces(now_);
@@ -246,7 +246,7 @@ SolveStatus RingEquilibrium::reach(const DrivePosition& target) noexcept
 
 SolveStatus RingEquilibrium::follow(const DrivePosition& target) noexcept
 {
-  constexpr double FOLLOWED = 10.0;  // factor on the tolerance [-]
+  constexpr double FOLLOWED = 10.0;  // factor on the tolerance of the forces [-]
   goal_ = { FOLLOWED * tolerance_, tolerance_, false };
   const SolveStatus status = moveTo(target);
   goal_ = { tolerance_, tolerance_, true };
@@ -319,7 +319,7 @@ SolveStatus RingEquilibrium::solvePredicted() noexcept
   goal_.guess = tolerance_;
   if (prediction_.fromKept())
   {
-    goal_.guess = goal_.residual;  // not tighter, because the error does not enter the next guess
+    goal_.guess = goal_.residual;  // no tighter limit, because this guess's error does not enter the next guess
     now_.cup_stiffness = 0.0;      // the rates do not belong to the present teeth
     if (!goal_.present_rates)
     {
@@ -351,7 +351,7 @@ SolveStatus turnWaveGenerator(RingEquilibrium& ring, double angle) noexcept
     return {};
   }
   target.wave_generator_angle = angle;
-  // Predicts the output angle at constant load. Without stiffness (backlash) it changes by the motor's turn / ratio.
+  // Predicts the output angle at constant load. Without stiffness (backlash) the output turns by motor turn / ratio.
   const double stiffness = ring.stiffness()(1, 1);
   target.output_angle +=
       stiffness > 0.0 ? -turn * ring.stiffness()(1, 0) / stiffness : turn / nominalRatio(ring.model().gear);
@@ -378,9 +378,9 @@ double balanceTolerance(const RingEquilibrium& ring) noexcept
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
   constexpr int MAX_IDLE = 20;          // number of successive iterations without progress
-  constexpr double CLOSER = 0.999;      // an excess below this share of the least excess before is progress [-]
-  constexpr double FIRST_REACH = 0.01;  // first length of a step [tooth spaces]
-  constexpr double MAX_REACH = 0.25;    // length of a step, above which teeth would get other spaces [tooth spaces]
+  constexpr double CLOSER = 0.999;      // an excess below this share of the least excess so far is progress [-]
+  constexpr double FIRST_REACH = 0.01;  // largest length of the first step [tooth spaces]
+  constexpr double MAX_REACH = 0.25;    // largest length of a step; teeth change spaces in longer ones [tooth spaces]
   SolveStatus total = turnWaveGenerator(ring, wave_generator_angle);
   double reach = FIRST_REACH * toothSpace(ring);
   double excess = ring.forces().output_torque - load_torque;

@@ -30,15 +30,15 @@ public:
   /// Solves from a guess of the tooth points [m]. Every tooth gets the space nearest to its angle at rest.
   SolveStatus solveFrom(const Eigen::VectorXd& points, const DrivePosition& position) noexcept;
 
-  /// Repeats the insertion after `moveTo` failed. The teeth get new spaces. On failure the state does not change.
+  /// Repeats the insertion after `moveTo` failed. Every tooth gets the space nearest to it. On failure the state stays.
   SolveStatus reinsert(const DrivePosition& target) noexcept;
 
   /// Solves at the present position after a change of the model. If this fails, repeats the insertion. `moveTo` calls
   /// this function if the caller did not call it after the change.
   SolveStatus updateModel() noexcept;
 
-  /// Computes rates and stiffness at the present shape. After `moveTo` they are those of the shape before its last
-  /// Newton step. @returns false and changes nothing if the tangent has no inverse.
+  /// Computes rates and stiffness at the present shape. After `moveTo`, rates and stiffness are those of the shape
+  /// before the last Newton step. @returns false and changes nothing if the tangent has no inverse.
   bool refreshSensitivities() noexcept;
 
   /// Solves for the equilibrium at another position from the present one.
@@ -51,7 +51,7 @@ public:
   /// get the nearest space. This is slow. On failure the state does not change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
-  /// Calls `moveTo`. If this fails, calls `descend`. If this fails too, calls `reinsert`.
+  /// Calls `moveTo`. If it fails, calls `descend` (with balls only). If no call succeeds, calls `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
   /// Solves like `reach`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and
@@ -85,7 +85,7 @@ public:
   /// Second derivatives of the energy by wave generator and output angle, with the ring in equilibrium [N.m/rad].
   const Eigen::Matrix2d& stiffness() const noexcept { return now_.stiffness; }
 
-  /// Output speed over wave generator speed at constant load, from the stiffness [-]; 0 if the output is free.
+  /// Output speed over wave generator speed at constant load, from the stiffness [-]; 0 if the output has no stiffness.
   double velocityRatio() const noexcept
   {
     return now_.stiffness(1, 1) > 0.0 ? -now_.stiffness(1, 0) / now_.stiffness(1, 1) : 0.0;
@@ -124,9 +124,9 @@ private:
 /// Moves the wave generator to an angle [rad], and the output to the angle at which the mesh balances `load_torque`
 /// [N.m] (> 0 resists positive rotation). The method is Newton's with the stiffness of the ring in equilibrium.
 ///
-/// A trust region limits the step of the output angle. The region begins at a hundredth of a tooth space. It grows if
-/// the torque of the mesh comes nearer to the load, and shrinks if not. Without stiffness (backlash) a step has the
-/// length of the region. On failure SolveStatus::unbalanced_torque is the load minus the torque at the last angle.
+/// A trust region limits the step of the output angle. The region begins at a hundredth of a tooth space. The region
+/// grows if the torque of the mesh comes nearer to the load, else it shrinks. Without stiffness (backlash) a step has
+/// the length of the region. On failure SolveStatus::unbalanced_torque is the load minus the torque at the last angle.
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept;
 
 /// Inserts the wave generator at its full amplitude, then calls balanceOutput.

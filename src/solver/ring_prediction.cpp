@@ -11,7 +11,7 @@ namespace hjt
 namespace
 {
 constexpr int KEPT = 256;            // number of stored states over a pitch
-constexpr double MAX_PITCHES = 1e9;  // limit for a number of pitches as int
+constexpr double MAX_PITCHES = 1e9;  // largest number of pitches that is converted to int
 
 constexpr int VECTORS = 3;  // vectors of a stored state
 
@@ -45,7 +45,7 @@ RingPrediction::RingPrediction(const RingModel& model)
 
 void RingPrediction::predict(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double ALIKE = 0.8;  // least similarity of two errors that is no coincidence [-]
+  constexpr double ALIKE = 0.8;  // least similarity of two errors for a correction of the guess [-]
   const int teeth = state.shape.solved;
   double share = 0.0;
   if (guessed_)
@@ -87,7 +87,7 @@ void RingPrediction::keep(const RingState& state) noexcept
   {
     return;
   }
-  constexpr double SAME_TWIST = 1e-7;  // [rad]
+  constexpr double SAME_TWIST = 1e-7;  // twists with a smaller difference count as equal [rad]
   const int place = placeOf(pitches);
   Kept& kept = kept_[static_cast<std::size_t>(place)];
   if (kept.known &&
@@ -119,7 +119,7 @@ double RingPrediction::twistSince(const Kept& kept, const DrivePosition& positio
 /// Guesses from the nearest stored state. @returns false and does nothing if no stored state is near enough.
 bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
 {
-  constexpr double NEAR_TWIST = 2e-5;  // [rad]
+  constexpr double NEAR_TWIST = 2e-5;  // largest difference of twist from a stored state that gives a guess [rad]
   from_ = {};
   const double pitch = model_->rest.pitchAngle();
   const double pitches = target.wave_generator_angle / pitch;

@@ -13,10 +13,10 @@ namespace hjt
 ///
 /// If the wave generator turns by whole tooth pitches, the guess is the old state with renumbered teeth. For the
 /// remaining fraction of a pitch the guess is a cubic between this state and its copy one pitch further, forwards or
-/// backwards, with the tangents of both states. A change of the torsion is added by the derivative by the output angle.
-/// If the ring repeats after half a turn, the prediction stores the states of the last pitches by their position in the
-/// pitch, and the guess is that of the tangent at the nearest stored state. The error of the last guess corrects the
-/// next guess as far as the last two errors were similar. Errors by single teeth differ.
+/// backwards, with the tangents of both states. The derivative by the output angle gives the effect of a change of the
+/// torsion. If the ring repeats after half a turn, the prediction stores the states of the last pitches by their
+/// position in the pitch, and the guess follows the tangent of the nearest stored state. The error of the last guess
+/// corrects the next guess as far as the last two errors were similar. Errors by single teeth are not similar.
 class RingPrediction
 {
 public:

@@ -54,7 +54,7 @@ HJT_VECTOR_CLONES int signsChanged(const Eigen::VectorXd& a, const Eigen::Vector
   const int n = teeth;
   const double* __restrict__ first = a.data();
   const double* __restrict__ second = b.data();
-  double changed = 0.0;  // a double like the values, so that the compiler vectorises the loop
+  double changed = 0.0;  // number of changes, a double like the values so that the compiler vectorises the loop
 #pragma omp simd reduction(+ : changed)
   for (int i = 0; i < n; ++i)
   {

@@ -43,13 +43,13 @@ struct Combination
   };
 };
 
-/// result = the combination, turned as in `turn`, on a half ring of `teeth` teeth. Values that leave the half ring at
-/// its end enter at its start with opposite sign. `places`: 0 ... teeth - 1.
+/// result = the sum of `vectors` times `factors`, turned as in `turn`, on a half ring of `teeth` teeth. Values that
+/// leave the half ring at its end enter at its start with opposite sign. `places`: 0 ... teeth - 1.
 void turnHalf(const Combination& vectors, const Combination::Factors& factors, int places, double c, double s,
               Eigen::VectorXd& result, int teeth) noexcept;
 
-/// result = the combination with the factors `here` + the combination with the factors `turned`, turned as in `turn`.
-/// The vectors have all teeth. Only the first `teeth` teeth of the result are computed.
+/// result = sum of `vectors` times `here` + sum of `vectors` times `turned`, the second sum turned as in `turn`. The
+/// vectors have all teeth. Only the first `teeth` teeth of the result are computed.
 void addTurned(const Combination& vectors, const Combination::Factors& here, const Combination::Factors& turned,
                int places, double c, double s, Eigen::VectorXd& result, int teeth) noexcept;
 }  // namespace ring_vectors

@@ -107,7 +107,7 @@ namespace
 {
 using Weights = std::array<double, 4>;
 
-/// Values and derivatives of the cubic B-splines of the four nearest knots. `t`: position after the second knot.
+/// Values and derivatives of the cubic B-splines of the four nearest knots. `t`: distance from the second knot [knots].
 struct Spline
 {
   explicit Spline(double t) noexcept

@@ -97,7 +97,7 @@ struct ToothResponse
   /// Quantities of each tooth, in the order of storage.
   enum Quantity : unsigned char
   {
-    WAVE_GENERATOR_FORCE,  ///< [N]
+    WAVE_GENERATOR_FORCE,  ///< force of the wave generator on the tooth [N]
     RIM_TENSION,           ///< tension to the next tooth [N]
     BENDING_FORCE,         ///< force of the segment to the next tooth [N]
     MESH_FORCE,            ///< force on the flank; > 0 leading flank, < 0 trailing flank [N]
@@ -109,7 +109,7 @@ struct ToothResponse
   int teeth{};                ///< number of teeth of the flexspline
   int stored{};               ///< number of stored teeth: half of all if half a turn changes only signs of positions
   int columns{};              ///< number of equal intervals of u in a pitch
-  double pitch{};             ///< [rad]
+  double pitch{};             ///< tooth pitch of the flexspline [rad]
   double ratio{};             ///< nominal ratio [-]
   std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: there is no table
   /// for each line columns + 1 nodes, for each node all quantities, for each quantity the stored teeth
@@ -173,7 +173,7 @@ public:
   struct Change
   {
     SurfaceEnergy energy;
-    double contact_force{};  ///< [N]
+    double contact_force{};  ///< change of the sum of the wave generator's forces on all teeth [N]
     double flanks{};         ///< relative change of the flank friction [-]
   };
   /// `v` must be in the range of the table.

@@ -15,11 +15,11 @@ namespace hjt
 {
 namespace
 {
-constexpr int LINES = 48;         // number of intervals of w
-constexpr int COLUMNS = 8;        // number of intervals of u in a pitch
-constexpr int PLACES = 80;        // number of intervals of chi in half a turn
+constexpr int LINES = 48;         // number of intervals of w (u, v, w and chi: see BallTable)
+constexpr int COLUMNS = 8;        // number of intervals of the wave generator angle u in a tooth pitch
+constexpr int PLACES = 80;        // number of intervals of the ball's angle chi in half a turn
 constexpr double SCALE = 1e-3;    // scale of v: for |v| below it lines are equidistant, above it geometric [rad]
-constexpr double LONGEST = 1e-3;  // largest change of v between two solves [rad]
+constexpr double LONGEST = 1e-3;  // largest change of v between two solves of the ring [rad]
 
 using Coefficients = BallTable::Coefficients;
 
@@ -94,7 +94,7 @@ public:
   {
   }
 
-  /// Measures the line at `v`. `values`: results by column, then place. @returns false without an equilibrium.
+  /// Measures the line at `v`. `values`: results by column, then place. @returns false if the ring has no equilibrium.
   bool measure(double v, int columns, int places, std::vector<Coefficients>& values)
   {
     bool good = ring_.insert();
@@ -139,15 +139,15 @@ private:
              ring_.flankFriction(node) };
   }
 
-  /// Solves with the ball dropped by `part` of the largest drop. @returns false without an equilibrium.
+  /// Solves with the ball dropped by `part` of the largest drop. @returns false if the ring has no equilibrium.
   bool dropTo(double part, double angle, double v)
   {
     ring_.editModel().ring.edit<WaveGeneratorContact>().gap() = sound_gap_ + part * deepest_ * share_;
     return ring_.moveTo(angle, v);
   }
 
-  /// Computes the coefficients for one ball from the ring at two drops. `c1`: derivative of the energy by x at the drop
-  /// 0 [J]. @returns false without an equilibrium.
+  /// Computes the coefficients for one ball from the ring at two drops. `c1`: derivative of the energy by x, drop /
+  /// largest drop, at x = 0 [J]. @returns false if the ring has no equilibrium.
   bool measureBall(double angle, double v, const Sample& sound, double c1, Coefficients& coefficients)
   {
     if (!dropTo(0.5, angle, v))
@@ -183,7 +183,7 @@ private:
   double deepest_;
   double turn_;
   double ball_pitch_;
-  Eigen::VectorXd share_;  // sag of the race at each tooth over the drop of the ball [-]
+  Eigen::VectorXd share_;  // sag of the race at each tooth, divided by the drop of the ball [-]
 };
 using Lines = std::array<std::vector<Coefficients>, LINES + 1>;
 

@@ -62,8 +62,8 @@ void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& 
   }
 }
 
-/// Makes the end of a pitch and the start of the next pitch equal functions of v. On lines that only one of the pitches
-/// has, the values at this edge are interpolated between the lines that the pitches have in common.
+/// Makes the values at the end of a pitch and at the start of the next pitch equal functions of v. On lines that only
+/// one of the pitches has, the values at this edge are interpolated between the lines that both pitches have.
 void joinPitches(OpenPitch& before, OpenPitch& after)
 {
   std::vector<double> common;
@@ -93,13 +93,13 @@ DeviationTable tableOf(std::vector<OpenPitch> pitches, bool swaps_lobes)
   return table;
 }
 
-/// Comparison of a grid of deviations with the ring between the nodes of the grid.
+/// Comparison of a grid of deviations with the solved ring, between the nodes of the grid.
 class DeviationCheck
 {
 public:
   using Torques = Eigen::Array2d;  ///< torques on output and motor [N.m]
 
-  /// `ring`: gives the torque limits and is not solved.
+  /// `ring`: ring of the gear, of which only torque limits and tolerances are used.
   explicit DeviationCheck(const SurfaceRing& ring) : ring_(ring) {}
 
   Torques torques(const SurfaceNode& deviation) const
@@ -134,8 +134,8 @@ public:
   }
 
   /// Interpolation error between two strips at the strip `middle` halfway between them: root mean square divided by the
-  /// tolerance [-]. `height`: difference of v between the two strips [rad]. The mean is taken because no grid resolves
-  /// the single kinks where a tooth begins to touch.
+  /// tolerance [-]. `height`: difference of v between the two strips [rad]. The check uses the mean because no grid
+  /// resolves the single kinks where a tooth begins to touch.
   double missBetween(const Strip& below, const Strip& above, double height, const Strip& middle,
                      const Torques& tolerance) const
   {
@@ -173,11 +173,11 @@ using Lines = std::map<double, Line>;  // lines by their v [rad]
 using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
-constexpr double SMALLEST = 0.1;  // lines with a smaller share of the largest deviation count as having this share [-]
-constexpr double FINEST = 0.3;    // least tolerance of a deviation, as a share of the surface's tolerance [-]
-constexpr double WIDEST = 3.0;    // largest factor by which FINEST may increase the tolerance of a deviation [-]
-constexpr int COARSE_LINES = 12;  // number of lines on each side of no load before refinement; denser near no load
-constexpr int MAX_HALVINGS = 5;   // largest number of halvings of an interval between two lines
+constexpr double SMALLEST = 0.1;      // least share of the largest deviation that a line is assumed to have [-]
+constexpr double FINEST = 0.3;        // least tolerance of a deviation, as a share of the surface's tolerance [-]
+constexpr double WIDEST = 3.0;        // largest factor by which FINEST may increase the tolerance of a deviation [-]
+constexpr int COARSE_LINES = 12;      // number of lines on each side of no load before refinement, closest near no load
+constexpr int MAX_HALVINGS = 5;       // largest number of halvings of an interval between two lines
 constexpr double SAME_TORQUE = 1e-7;  // largest difference of equal torques, as a share of the torque limit [-]
 constexpr int MIN_COLUMNS = 4;
 constexpr int MAX_COLUMNS = 16;
@@ -249,8 +249,8 @@ private:
   }
 
   /// Measures the deviations on the line at `v` for the wanted pitches: first at their edges, then, on the way back,
-  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks without an
-  /// equilibrium.
+  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks if the ring
+  /// has no equilibrium.
   bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const bool there = !failed_ && rings.leadTo(v, longest_way_);
@@ -327,8 +327,8 @@ private:
     return measureLine(rings, v, wanted, line);
   }
 
-  /// Tolerance of the torques on a line, which follows from the largest deviation on the line and on the coarse lines.
-  /// The tolerance is wider if the deviation is small compared with the surface's tolerance.
+  /// Tolerance of the torques on a line [N.m]: a share of the largest deviation on the line and the coarse lines, but
+  /// up to WIDEST times this share if the deviation is small compared with the surface's tolerance.
   Torques toleranceOf(const Line& line) const
   {
     const Torques own = line.overload * share_ * line.largest.max(SMALLEST * largest_);
@@ -377,7 +377,7 @@ private:
         note(line, miss());
       }
     }
-    // Under load the deviations of a pitch can move to the next pitch.
+    // Under load the deviations of a pitch can move to a neighbouring pitch.
     for (std::size_t pitch = 0; pitch < pitches_; ++pitch)
     {
       columns_[pitch] = std::max({ enough[last(pitch)], enough[pitch], enough[next(pitch)] });
@@ -390,7 +390,7 @@ private:
     }
   }
 
-  /// Measures the coarse lines, which are denser near no load. With mirror symmetry, measures only lines of v >= 0.
+  /// Measures the coarse lines, which are closest near no load. With mirror symmetry, measures only lines of v >= 0.
   void coverRange(double lowest, double highest)
   {
     for (int i = mirror_ ? 0 : -COARSE_LINES; i <= COARSE_LINES; ++i)
@@ -475,7 +475,7 @@ private:
     }
   }
 
-  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap there.
+  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap above this limit.
   void note(const Line& line, double miss)
   {
     if (line.overload == 1.0)
@@ -544,14 +544,14 @@ private:
   std::function<void(double)> progress_;
   std::size_t max_points_;
   unsigned threads_;
-  const SurfaceRing ring_;  // gives limits and tolerances, is not solved
+  const SurfaceRing ring_;  // gives limits and tolerances; no equilibrium of this ring is solved
   const DeviationCheck check_;
   std::size_t pitches_;
   std::vector<int> columns_;    // number of columns of each pitch
   std::vector<double> coarse_;  // v of the coarse lines, ascending
   Lines lines_;
   std::optional<DeviationMirror> mirror_;  // if set, only lines of v >= 0 are measured
-  const Torques share_{ 5e-3, 7e-3 };      // tolerance as a share of the largest deviation on a line [-]
+  const Torques share_{ 5e-3, 7e-3 };      // tolerance as a share of the largest deviation on a line: output, motor [-]
   Torques largest_{ Torques::Zero() };     // largest deviations on the coarse lines [N.m]
   double longest_way_{};                   // largest change of v between two solves [rad]
   std::atomic<std::size_t> points_{ 0 };   // points of all lines

@@ -27,8 +27,8 @@ struct DeviationLine
 };
 
 /// A ring with equal teeth (`equal`) and the ring of the gear (`actual`). The guess of the shape of `actual` is the
-/// shape of `equal` at the same angles plus the difference of their shapes at the preceding node, because this
-/// difference changes less than each shape.
+/// shape of `equal` at the same angles plus the difference of the two shapes at the preceding node, because this
+/// difference changes less from node to node than each shape.
 struct DeviationRings
 {
   DeviationRings(const SurfaceParameters& parameters, const JointModel& equal_model, const JointModel& actual_model)
@@ -38,7 +38,7 @@ struct DeviationRings
 
   bool insert() { return equal.insert() && actual.insert(); }
 
-  /// Moves both rings to another line at constant motor angle, in steps of at most `longest`.
+  /// Moves both rings to the line at `target` at constant motor angle, in steps of at most `longest` [rad].
   bool leadTo(double target, double longest)
   {
     const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(target - v) / longest)));
@@ -94,7 +94,7 @@ struct DeviationRings
 
   SurfaceRing equal;
   SurfaceRing actual;
-  double v{};  // present v [rad]
+  double v{};  // present v, see SurfaceTable [rad]
 
 private:
   struct Shape
@@ -108,8 +108,8 @@ private:
   bool departure_known_{ false };
 };
 
-/// Mirror symmetry of deviations: the energy at the motor angle x [pitches] and v equals the energy at centre - x and
-/// -v. The symmetry exists for a fault with mirror symmetry in a gear that has mirror symmetry and, else, equal teeth.
+/// Mirror symmetry of deviations: the energy at motor angle x [pitches] and v equals that at c - x and -v, c constant.
+/// The symmetry exists for a fault with mirror symmetry in a gear that has mirror symmetry and, else, equal teeth.
 class DeviationMirror
 {
 public:
@@ -173,8 +173,8 @@ private:
     return node;
   }
 
-  /// Whether the mirror image of `line` is `opposite`. Compares the torques at every node. Compares means of friction
-  /// and lobe forces, because their rates jump where a tooth begins to touch.
+  /// Whether the mirror image of `line` is `opposite`. Compares the torques at every node, but only the means of
+  /// friction and lobe forces, whose slopes jump where a tooth begins to touch.
   bool gives(const DeviationLine& line, const DeviationLine& opposite, const Same& same) const
   {
     // largest mean difference of equal values, as a share of their mean [-]

@@ -23,7 +23,7 @@ std::string keyOf(const FaultList& faults)
   return text.str();
 }
 
-/// The fault if it is the only fault, at a tooth or segment of the flexspline, and the teeth are else equal; or null.
+/// The fault if there is one fault, at a tooth or segment of the flexspline, and the other teeth are equal; else null.
 const Fault* singleFaultOfATooth(const Parameters& parameters, const FaultList& faults)
 {
   Parameters without = parameters;
@@ -99,7 +99,7 @@ SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const Fault
   {
     return none("for more than one fault of the bearing, or for a spall longer than the distance of two balls", source);
   }
-  // A fault of a single tooth hardly changes the effect of a ball, so that the two effects are added.
+  // A fault of a single tooth hardly changes the effect of a dropping ball, so that their effects add up.
   const bool adds_up = of_a_tooth != nullptr && describe(of_a_tooth->kind).place == FaultPlace::TOOTH;
   const FaultList felt_by_balls = adds_up ? FaultList() : others;
   const SurfacePool::Surface balls =

@@ -7,11 +7,11 @@
 
 namespace hjt
 {
-/// Whether the fault is one of the bearing's balls, races or cage. The balls repeat with other angles than the gear, so
-/// a table over motor and output angle cannot contain such a fault.
+/// Whether the fault is one of the bearing's balls, races or cage. The positions of the balls repeat after other angles
+/// than the gear, so a table over the two angles of the joint cannot contain such a fault.
 bool isOfTheBalls(const Fault& fault) noexcept;
 
-/// Response surface of the drive with these faults; null if there is none. SurfaceSource::notice then gets the reason.
+/// Response surface of the drive with `faults`; null if it has no surface. SurfaceSource::notice then gets the reason.
 SurfacePool::Surface surfaceWithFaults(const Parameters& parameters, const FaultList& faults,
                                        const SurfaceSource& source);
 }  // namespace hjt

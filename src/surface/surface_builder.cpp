@@ -243,7 +243,7 @@ private:
     note(line, miss);
   }
 
-  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap there.
+  /// Stores the result of a check. Lines above the torque limit do not count, because teeth can snap above this limit.
   void note(const Line& line, double miss)
   {
     if (std::abs(line.front()[SurfaceNode::ENERGY_BY_V]) <= limit_)
@@ -313,7 +313,7 @@ private:
   std::size_t max_points_;
   unsigned threads_;
   int columns_{};
-  double limit_{};              // torque limit [N.m]
+  double limit_{};              // torque limit at the output [N.m]
   double step_{};               // distance of coarse lines in v [rad]
   bool mirrored_{};             // whether the gear has mirror symmetry; then only lines of v >= 0 are measured
   std::vector<double> coarse_;  // v of the coarse lines, ascending

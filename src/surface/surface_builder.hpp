@@ -36,18 +36,18 @@ SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
                           unsigned threads = processors());
 
 /// Tabulates forces and positions of the teeth. `coarse`: v of lines that the ring can reach in steps of `step` [rad],
-/// no load among them; the table ends at the outermost of these lines. `mirrored`: the gear has mirror symmetry, and
-/// `coarse` has only v >= 0.
+/// one of them at no load; the table ends at the outermost of these lines. `mirrored`: the gear has mirror symmetry,
+/// and `coarse` has only v >= 0.
 ///
 /// Columns and lines are doubled until the values between them meet the tolerance. The tolerance of a force is
 /// TOOTH_FORCE_SHARE of the largest force of its quantity, or LEAST_TOOTH_FORCE if this is larger. `solves` counts
-/// equilibria. The result has no lines if the ring had no equilibrium, or if the table would exceed MAX_TOOTH_VALUES.
+/// equilibria. The result has no lines if the ring has no equilibrium or the table would exceed MAX_TOOTH_VALUES.
 ToothResponse buildToothResponse(const SurfaceParameters& parameters, const JointModel& model,
                                  const std::vector<double>& coarse, double step, bool mirrored, unsigned threads,
                                  std::atomic<int>& solves);
 
-constexpr double TOOTH_FORCE_SHARE = 0.01;                        ///< [-]
-constexpr double LEAST_TOOTH_FORCE = 0.5;                         ///< [N]
+constexpr double TOOTH_FORCE_SHARE = 0.01;                        ///< tolerance over the largest force [-]
+constexpr double LEAST_TOOTH_FORCE = 0.5;                         ///< least tolerance of a tooth's force [N]
 constexpr std::size_t MAX_TOOTH_VALUES = std::size_t{ 1 } << 24;  ///< number of values as float: 64 MB
 
 /// Largest number of points of a table of deviations: 250 MB. A rim with a small crack needs a sixth of these points.
@@ -79,7 +79,7 @@ struct BallBuild
   std::string failure_reason;  ///< empty: the table is valid
 };
 
-/// Tabulates the drop of a ball by up to `deepest` [m], for v of `lowest` ... `highest` [rad].
+/// Tabulates the effect of a ball that drops by up to `deepest` [m], for v of `lowest` ... `highest` [rad].
 ///
 /// `sound`: gear without a fault of the bearing that repeats after every tooth pitch. `progress`, `threads`: see
 /// buildSurface.

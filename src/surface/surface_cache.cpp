@@ -199,7 +199,7 @@ constexpr const char* FIRST_WORDS = "harmonic_joint_twin response surface ";
 const std::string NO_SURFACE = "no response surface: ";
 const std::string FULL_RING_INSTEAD = "; the twin solves the full ring at every step";
 
-/// Header of a file, with all that determines its table: code, parameters with the files that they name, and faults.
+/// Header of a file, with all that determines the table: code, parameters with the files that they name, and faults.
 std::string header(const Parameters& parameters, const std::string& faults)
 {
   std::string text =
@@ -214,7 +214,7 @@ std::string header(const Parameters& parameters, const std::string& faults)
     }
     text += '\n';
   }
-  // Fills the header so that the numbers after it are aligned.
+  // Fills the header to a multiple of the size of a number, so that the numbers after the header are aligned.
   text.append((sizeof(double) - text.size() % sizeof(double)) % sizeof(double), '\n');
   return text;
 }
@@ -259,7 +259,7 @@ void tellMisses(const DeviationTable& table, const SurfaceSource& source)
 
 void tellMisses(const BallTable& /*table*/, const SurfaceSource& /*source*/) {}
 
-/// Table from the cache or, if it is not there, built and stored. Empty if the build failed (reported to `source`).
+/// Table from the cache or, if it is missing there, built and stored. Empty if the build failed (reported to `source`).
 template <class Table, class Build>
 std::optional<Table> obtain(const std::string& kind, const std::string& key, const SurfaceSource& source, Build build)
 {
@@ -309,7 +309,7 @@ std::optional<Table> obtain(const std::string& kind, const std::string& key, con
   return std::move(built.table);
 }
 
-/// Number of threads of a build. It leaves one processor to a twin that runs during the build.
+/// Number of threads of a build. A build in the background leaves one processor to the twin.
 unsigned threadsFor(const SurfaceSource& source)
 {
   return std::max(1u, processors() - (source.background ? 1u : 0u));
@@ -323,7 +323,7 @@ double deepestDrop(const Parameters& parameters)
   return std::max(spalled.deepest(), parameters.fault_scale.cage_deflection);
 }
 
-/// Header of a table of balls, which depends on the scales of their faults.
+/// Header of a BallTable's file, which contains the largest drop of a ball.
 std::string ballHeader(const Parameters& parameters, const std::string& faults)
 {
   return header(parameters, faults + "a ball that drops by " + numberText(deepestDrop(parameters)));
@@ -348,7 +348,7 @@ int repetition(const Parameters& parameters, const JointModel& model, const std:
   return alike ? 1 : SurfaceRing(parameters, model).repetition();
 }
 
-/// See obtainSurface. `teeth_alike`: returns nothing if the teeth differ.
+/// See obtainSurface. `teeth_alike`: whether to return nothing if the teeth differ.
 std::optional<SurfaceTables> obtainTables(const Parameters& parameters, const JointModel& model,
                                           const std::string& faults, const SurfaceSource& source, bool teeth_alike)
 {

@@ -43,7 +43,7 @@ private:
 
   std::size_t kept_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // entries, the last requested entry first
+  std::list<Entry> entries_;  // surfaces, the last requested surface first
 };
 
 struct SurfaceTables
@@ -52,7 +52,7 @@ struct SurfaceTables
   DeviationTable deviations;
 };
 
-/// Surface of a gear from the cache or, if it is not there, built and stored. Nothing if the gear has no surface.
+/// Surface of a gear from the cache or, if it is missing there, built and stored. Nothing if the gear has no surface.
 ///
 /// `model`: joint of these parameters with its faults; `faults`: text of the faults for the cache, empty without
 /// faults. If the teeth of a part differ by faults or errors of manufacture, the result contains the deviations of the
@@ -61,15 +61,15 @@ struct SurfaceTables
 /// A file in the cache is valid if it is a regular file of this user, not writable for others, of at most 1 GB. It must
 /// begin with the hash of this code and equal parameters and faults, end with the hash of its bytes, and contain finite
 /// numbers on ascending lines. If a file is not valid, the table is built again and replaces the file. These checks
-/// find damage and files of other builds, but not a table that this user has forged. Files are written atomically.
+/// find damage and files of other builds, but not a table that the user has forged. Files are written atomically.
 std::optional<SurfaceTables> obtainSurface(const Parameters& parameters, const JointModel& model,
                                            const std::string& faults, const SurfaceSource& source);
 
-/// Surface of obtainSurface, from the pool of the source if the source has a pool.
+/// Surface of obtainSurface, shared in the pool of `source` if `source` has a pool.
 SurfacePool::Surface sharedSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                    const SurfaceSource& source);
 
-/// Surface of a gear with a BallTable for any fault of the bearing, from the pool of the source if the source has a
+/// Surface of a gear with a BallTable for any fault of the bearing, shared in the pool of `source` if `source` has a
 /// pool. Null if the teeth differ. `model`: joint with a sound bearing.
 SurfacePool::Surface sharedBallSurface(const Parameters& parameters, const JointModel& model, const std::string& faults,
                                        const SurfaceSource& source);

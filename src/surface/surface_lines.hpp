@@ -22,8 +22,8 @@ public:
   const SurfaceRing& ring() const noexcept { return ring_; }
   SurfaceRing& ring() noexcept { return ring_; }
 
-  /// Inserts the ring anew and moves it to `v` at the motor angle 0. The steps are those between coarse lines, so that
-  /// the ring reaches the equilibria of these lines. @returns false if the ring has no equilibrium.
+  /// Inserts the ring anew and moves it to `v` at the motor angle 0. It moves by `step`, the distance of coarse lines,
+  /// so that the ring reaches the equilibria of these lines. @returns false if the ring has no equilibrium.
   bool leadTo(double v, double step)
   {
     const int steps = static_cast<int>(std::lround(std::abs(v) / step));
@@ -35,8 +35,8 @@ public:
     return good;
   }
 
-  /// Measures the nodes of the line at `v`. Successive lines are measured in alternating directions, so that all moves
-  /// are short. Empty if the ring has no equilibrium.
+  /// Measures the nodes of the line at `v`. Successive lines are measured in alternating directions of the motor, so
+  /// that all moves are short. Empty if the ring has no equilibrium.
   SurfaceLine measure(double v, int columns)
   {
     SurfaceLine line(static_cast<std::size_t>(columns) + 1);
@@ -64,9 +64,9 @@ class LineCheck
 public:
   LineCheck(const SurfaceRing& ring, int columns) : ring_(ring), columns_(columns) {}
 
-  /// Largest miss of the torques, and miss of the mean friction, between two lines at the measured `line` between them.
-  /// Single values of friction do not count. They jump where a tooth begins to touch, at places that differ from line
-  /// to line, and no grid resolves these jumps.
+  /// Largest miss of the torques, or miss of the mean friction if it is larger, at a measured `line` between two lines.
+  /// Single values of friction do not count. They jump where a tooth begins to touch. The places of the jumps differ
+  /// from line to line, so that no grid resolves them.
   double miss(double v_below, const SurfaceLine& below, double v_above, const SurfaceLine& above, double v,
               const SurfaceLine& line) const
   {
@@ -89,7 +89,7 @@ public:
     return std::max(largest, friction_misses / columns_);
   }
 
-  /// Largest miss of the torques between the columns of a line. `finer`: the line with a multiple of its columns.
+  /// Largest miss of the torques between the columns of a line. `finer`: this line with a multiple of the columns.
   double missOfColumns(double v, const SurfaceLine& finer) const
   {
     const std::size_t stride = (finer.size() - 1) / static_cast<std::size_t>(columns_);

@@ -24,9 +24,9 @@ constexpr double SAME_TORQUE = 1e-6;       // largest difference of equal torque
 constexpr double OVERLOAD_FACTOR = 10.0;   // factor on the tolerances above the torque limit [-]
 constexpr double COLLISION_MARGIN = 1.25;  // largest torque of the motor in a table, over the momentary peak torque [-]
 
-/// Divides the flanks into groups with common friction. Two groups differ in whether the slip of a running drive and
-/// the slip of an output that turns with the motor at rest have equal signs. Each of them is divided into three groups
-/// by the size of the slip. `terms`: friction of the flanks; `velocity_ratio`: output over motor speed.
+/// Divides the flanks into groups with common friction. In half of the groups the slip of a running drive and that of
+/// an output that turns with the motor at rest have equal signs, in the other half opposite signs. The size of the slip
+/// makes three groups of each half. `terms`: friction of flanks; `velocity_ratio`: output over motor speed.
 ///
 /// If the drive runs, or if the output turns with the motor at rest, all flanks of a group slide in one direction, so
 /// that the sum of their friction is exact. The coefficient of friction, which decreases with the slip, is that of the
@@ -41,8 +41,8 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
   struct Sums
   {
     double force{};
-    Eigen::Vector2d slip{ 0.0, 0.0 };     // force times slip: of the running drive, and of the output alone
-    Eigen::Vector2d squares{ 0.0, 0.0 };  // these two, times the slip of the running drive
+    Eigen::Vector2d slip{ 0.0, 0.0 };     // sum of force times slip: of the running drive, of the output alone
+    Eigen::Vector2d squares{ 0.0, 0.0 };  // sum of the terms of `slip` times the slip of the running drive
   };
   std::array<Sums, RingFrictionResponse::FLANK_GROUPS> sums;
   std::array<double, 2> first{};
@@ -76,8 +76,7 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
     const double size = group.force > 0.0 ? std::sqrt(group.squares[0] / group.force) : 0.0;
     const Eigen::Vector2d rms =
         size > 0.0 ? Eigen::Vector2d(group.squares / (group.force * size)) : Eigen::Vector2d(0.0, 0.0);
-    // Converts from slips per motor speed of the running drive, and per output speed alone, to slips per motor speed
-    // and output speed.
+    // Converts slips of the running drive and of the output alone to slips per motor speed and per output speed.
     groups[0] = group.slip[0] - velocity_ratio * group.slip[1];
     groups[2 * SIZES] = group.slip[1];
     groups[4 * SIZES] = rms[0] - velocity_ratio * rms[1];
@@ -97,8 +96,8 @@ SolverParameters solverOfTables()
   return solver;
 }
 
-/// Torque limit of a table [N.m]. The motor's part is limited, because the motor of a blocked wrist could apply 2.6
-/// times the gear's momentary peak torque, which is too much for a table.
+/// Torque limit of a table at the output [N.m]. The torque of the motor is limited, because the motor of a blocked
+/// wrist could apply 2.6 times the gear's momentary peak torque, which is too large for a table.
 double tabulatedTorque(const SurfaceParameters& parameters)
 {
   const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);
@@ -303,11 +302,11 @@ int SurfaceRing::repetition()
   constexpr double LOAD = 0.25;  // load of the samples, as a share of the torque limit [-]
   const int teeth = model_.ring.rest.teeth();
   // After half a turn of the wave generator the lobes are at the same teeth of the flexspline. After half a turn and a
-  // pitch they are at the same teeth of the circular spline. If the lobes differ, the period is twice as long.
+  // pitch they are at the same teeth of the circular spline. If the lobes differ, the period is doubled.
   const std::array<int, 5> candidates{ 1, teeth / 2, teeth / 2 + 1, teeth, teeth + 2 };
   std::array<bool, candidates.size()> repeats;
   repeats.fill(true);
-  std::vector<Eigen::Vector2d> sampled(2 * static_cast<std::size_t>(teeth) + 2);  // torques at the output [N.m]
+  std::vector<Eigen::Vector2d> sampled(2 * static_cast<std::size_t>(teeth) + 2);  // both torques, at the output [N.m]
   for (const double direction : { -1.0, 1.0 })
   {
     if (!insert())

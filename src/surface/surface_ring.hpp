@@ -46,7 +46,7 @@ public:
   /// Moves to a motor angle and v = output angle - motor angle / ratio [rad]. @returns false without an equilibrium.
   bool moveTo(double motor_angle, double v);
 
-  /// Moves from a guess of the tooth points at the new position [m].
+  /// Moves like `moveTo` above, from a guess of the tooth points at the new position [m].
   bool moveTo(double motor_angle, double v, const Eigen::VectorXd& guess);
 
   /// Tooth points [m]. rates: after `measure`, derivatives of these points by the motor angle at constant v [m/rad].
@@ -56,7 +56,7 @@ public:
   /// Values of a node at the present position.
   SurfaceNode measure();
 
-  /// Writes the values of a node of a ToothResponse. `values`: room for all quantities of the solved teeth.
+  /// Writes the values of a node of a ToothResponse. `values`: storage for all quantities of the solved teeth.
   void measureTeeth(float* values) const noexcept;
   int teeth() const noexcept { return ring_.shape().teeth(); }
   int solvedTeeth() const noexcept
@@ -67,7 +67,7 @@ public:
   double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< tooth pitch [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal ratio [-]
-  /// Torque limit of load or motor at the output, whichever is larger [N.m]. The motor's limit is at most
+  /// The larger one of the torque limits of load and motor, both at the output [N.m]. The motor's limit is at most
   /// COLLISION_MARGIN times the momentary peak torque.
   double torqueLimit() const noexcept { return torque_limit_; }
   const JointModel& model() const noexcept { return model_; }
@@ -86,8 +86,8 @@ public:
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
   /// Tolerance of a table's friction at the motor [N.m]: the tolerance of the motor torque. For a wave generator on
-  /// balls it is at least 1 % of the friction. A tooth that begins to touch changes all rates by some per cent, which
-  /// no grid resolves.
+  /// balls the tolerance is at least 1 % of the friction, because a tooth that begins to touch changes all rates by
+  /// some per cent, which no grid resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
   /// Friction torque of ring and bearing at the motor of a slow drive, with static friction of the flanks [N.m].
@@ -97,17 +97,17 @@ public:
   static double flankFriction(const SurfaceNode& node) noexcept;
 
   /// Number of tooth pitches after which the gear repeats at constant v, by torques at loads of both signs, sampled
-  /// once in each pitch. It is 1 for equal teeth. If the teeth of the flexspline differ, it is that of half a turn or a
-  /// turn of the wave generator, and for the circular spline one or two more. 0: none of these.
+  /// once in each pitch. It is 1 for equal teeth, that of half a turn or a turn of the wave generator if teeth of the
+  /// flexspline differ, and one or two more if teeth of the circular spline differ. 0: none of these.
   int repetition();
 
-  /// Whether the gear has mirror symmetry, by samples at three loads: at opposite angles the friction is equal and the
-  /// torques are opposite. False if the ring has no equilibrium at a sample.
+  /// Whether the gear has mirror symmetry, by samples at three loads: at opposite motor angles and loads the friction
+  /// is equal and the torques are opposite. False if the ring has no equilibrium at a sample.
   bool isMirrored();
 
   int solves() const noexcept { return solves_; }
 
-  /// Factor on the tolerances at a node: 1 up to the torque limit, larger above it [-].
+  /// Factor on the tolerances at a node [-]: 1 up to the torque limit, 10 above this limit.
   double overload(const SurfaceNode& node) const noexcept;
 
 private:
@@ -120,7 +120,7 @@ private:
   double ratio_;
   double wave_amplitude_;
   double torque_limit_;
-  double motor_limit_;  // [N.m]
+  double motor_limit_;  // torque that motorTolerance is a share of [N.m]
   double softest_;      // softest slope of the cup [N.m/rad]
   double static_friction_;
   double temperature_;

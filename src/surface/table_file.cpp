@@ -190,7 +190,7 @@ public:
     }
   }
 
-  /// Next `count` values, which stay in the file's memory; count < 1e12.
+  /// Next `count` values, which stay in the memory of the file; `count` < 1e12.
   template <class T>
   SharedValues<T> shared(std::size_t count)
   {
@@ -348,7 +348,7 @@ std::string write(const std::string& path, const std::string& header, const Tabl
 std::uint64_t tableChecksum(std::string_view bytes)
 {
   constexpr std::uint64_t PRIME = 1099511628211ull;
-  constexpr int TURN = 29;  // [bits]; without rotation a change of the highest bit would change no other bit
+  constexpr int TURN = 29;  // rotation [bits]; without it a change of the highest bit would change no other bit
   std::array<std::uint64_t, 4> rows{ 1, 2, 3, 4 };
   std::array<std::uint64_t, 4> words{};
   while (bytes.size() >= sizeof(words))

@@ -220,7 +220,7 @@ private:
     table.values = SharedValues<float>(std::move(all));
   }
 
-  /// Mirror image of a line: the line at the opposite v. Its u is a pitch minus u, and its teeth count backwards.
+  /// Mirror image of a line: the line at -v. Its values at u are those at one pitch - u, and its teeth count backwards.
   Values mirrorImage(const Values& line, const ToothResponse& table) const
   {
     const double cosine = std::cos(table.pitch);
