@@ -17,8 +17,8 @@ namespace hjt
 /// where    Phi  mean rotation of the tooth points from rest, mean_i(psi_i - psi0_i) [rad]
 ///          psi_i, psi0_i  angle of tooth point i, now and at rest [rad]
 ///
-/// The torque acts on the mean rotation. The thesis applies the torque to each tooth. This would make the cup too stiff
-/// by the number of teeth, and the cup would resist the travelling wave.
+/// The torque acts on the mean rotation. The thesis applies the torque to each tooth. The cup would then be too stiff
+/// by a factor equal to the number of teeth, and would resist the travelling wave.
 ///
 /// The curve C is that of the catalogue for the whole gear without the compliance of the model's rim, teeth and
 /// bearing. The wall and the diaphragm of the cup contribute 1/K_W (cup.wall_stiffness) to the compliance of C. No

@@ -116,7 +116,7 @@ struct JointFriction
   Eigen::Matrix2d viscous{ Eigen::Matrix2d::Zero() };  ///< torques per speeds, positive semi-definite [N.m.s/rad]
   /// derivatives of x and y of each tooth point by the motor angle, at constant load [m/rad]
   Eigen::VectorXd running;
-  // With these data of the full ring the strengths of the terms of shaft and flanks follow at any speeds.
+  // The strengths of the terms of shaft and flanks follow from these data of the full ring, for any speeds.
   double contact_force{};      ///< sum of the wave generator's forces on all teeth [N]
   double ring_torque{};        ///< torque of JointModel::ringTorque [N.m]
   int flanks{};                ///< number of terms of flanks, which follow the term of the shaft

@@ -38,7 +38,7 @@ public:
   }
   /// speed above which the speed limit reduces the torque [rad/s]
   double fadeSpeed() const noexcept { return (1.0 - FADE) * parameters_.speed_limit; }
-  double speedLimit() const noexcept { return parameters_.speed_limit; }  ///< [rad/s]
+  double speedLimit() const noexcept { return parameters_.speed_limit; }  ///< speed limit of the motor [rad/s]
 
   /// Reduced accelerating torque at a speed near the speed limit [N.m]: faded(T, 0) - fadeSlope(T) |speed|, at least 0.
   double faded(double torque, double speed) const noexcept

@@ -108,7 +108,7 @@ public:
                 const Eigen::VectorXd& rates) const noexcept;
 
 private:
-  double slip_lever_;  // [m]
+  double slip_lever_;  // lever of the slip [m]
   double coefficient_;
 };
 

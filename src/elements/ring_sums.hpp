@@ -32,7 +32,7 @@ struct ForceSum
   /// Extends the sum over the first half of the ring to the whole ring.
   void repeat() noexcept
   {
-    // The segments of this half load two teeth of the other half. These forces are added to copies in this half.
+    // This half loads the first and the last tooth of the other half. The teeth half a turn away get these forces.
     const Eigen::Index half = teeth.size() / 2;
     teeth.head<2>() -= teeth.segment<2>(half);
     teeth.segment<2>(half - 2) -= teeth.tail<2>();

@@ -137,7 +137,7 @@ FlankLaw ToothMesh::law(const ToothEngagement& tooth, int i) const noexcept
   return law;
 }
 
-/// Computes the depth of every tooth in the nearer flank. Only the few teeth in contact need more.
+/// Computes the depth of every tooth in the nearer flank. Only teeth in contact need energy and derivatives.
 HJT_VECTOR_CLONES void ToothMesh::findPressed(const RingShape& shape, double cos_output, double sin_output,
                                               Scratch& scratch) const noexcept
 {

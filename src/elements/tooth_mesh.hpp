@@ -29,12 +29,12 @@ struct ToothEngagement
 /// Energy of a tooth and its derivatives by xi and zeta.
 struct FlankLaw
 {
-  double energy;        ///< [J]
-  double by_xi;         ///< [N]
-  double by_zeta;       ///< [N]
-  double by_xi_xi;      ///< [N/m]
-  double by_xi_zeta;    ///< [N/m]
-  double by_zeta_zeta;  ///< [N/m]
+  double energy;        ///< energy of the contact [J]
+  double by_xi;         ///< derivative of the energy by xi [N]
+  double by_zeta;       ///< derivative of the energy by zeta [N]
+  double by_xi_xi;      ///< second derivative of the energy by xi [N/m]
+  double by_xi_zeta;    ///< mixed derivative of the energy by xi and zeta [N/m]
+  double by_zeta_zeta;  ///< second derivative of the energy by zeta [N/m]
   double slope;         ///< tangent of the flank's angle at the contact [-]
   double cosine;        ///< cosine of the flank's angle [-]
 };

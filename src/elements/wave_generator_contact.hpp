@@ -53,7 +53,7 @@ public:
   double press(const RaceDeflection& bearing, double wave_generator_angle, const Eigen::VectorXd& depth,
                Scratch& scratch, Eigen::VectorXd& force, double& torque) const noexcept;
 
-  /// Adds the Hessian of the energy, except the part that comes from the turn of the loaded normals.
+  /// Adds the Hessian of the energy, except the part that arises because the normals of loaded teeth turn.
   void addTangent(const RaceDeflection& bearing, const RingShape& shape, const Eigen::VectorXd& depth,
                   const Eigen::VectorXd& normal, const Scratch& scratch, RingTangent& tangent) const noexcept;
 

@@ -125,7 +125,7 @@ private:
   std::uint64_t number_{};
 };
 
-/// Sum of all conservative elements of the ring.
+/// Model of the ring: the sum of all its conservative elements.
 ///
 /// Assignment, `edit` and `setMeshed` change the model and its version. Solvers compare versions.
 class RingModel

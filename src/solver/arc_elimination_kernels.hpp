@@ -273,7 +273,7 @@ inline __attribute__((always_inline)) void carryOn(const Fresh& fresh, const Wei
 
 inline void factor(const Layout& where, const Tangent& entries, double* factors, const Sums& sums)
 {
-  // These are copies, because the compiler must assume that a store through a vector's pointer changes the arguments.
+  // Copies, because the compiler must assume that a store through a vector's pointer changes `where` and `entries`.
   const Layout layout = where;
   const Tangent tangent = entries;
   const Seeds seeds(layout, tangent);

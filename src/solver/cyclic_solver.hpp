@@ -69,7 +69,7 @@ private:
   const arcs::Kernels& kernels_;
   arcs::Layout layout_;
   std::array<int, arcs::COUNT> separator_;  // first tooth of each separator
-  Entries factors_;                         // never empty, because the kernels get a pointer to the first entry
+  Entries factors_;                         // factors of the arcs; not empty, as kernels get a pointer to its start
   Entries rows_;
   arcs::SchurFactors schur_;  // factors of the matrix of the separators after elimination of the cup
   Separators cup_;            // column of the cup's multiplier in the matrix of the separators

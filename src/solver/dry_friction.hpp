@@ -15,7 +15,7 @@ struct KickedSpeeds
   bool solved{ true };  ///< false: the friction problem was not solved and the speeds are invalid
 };
 
-/// Solver for the speeds v of motor and output after a time step with implicit friction. They minimise
+/// Solver for the speeds v of motor and output after a time step with implicit friction. These speeds minimise
 ///
 ///   1/2 (v - v_free)^T M (v - v_free) + h/4 (v + v_old)^T D (v + v_old) + h sum_j c_j sqrt((a_j v)^2 + e_j^2)
 /// where  v_free  speeds without friction, v_old  speeds before the step [rad/s]; h  length of the step [s]

@@ -28,7 +28,7 @@ public:
   /// Computes tangent and factors for `state`, after updateForces. @returns false if the tangent has no inverse.
   bool refactor(const RingState& state) noexcept;
 
-  /// Whether the slopes in the tangent changed: either the cup is on another slope than for the rates of `state`, or a
+  /// Whether the slopes in the tangent changed: either the cup is on another slope than `state.cup_stiffness`, or a
   /// contact began or ended since `refactor`. `all_teeth`: whether contacts of teeth with flanks count too.
   bool slopesChanged(const RingState& state, bool all_teeth) const noexcept;
   /// Whether the slopes changed since `refactor`.
@@ -37,11 +37,11 @@ public:
   /// Computes the step of the tooth points from the forces and the factored tangent [m].
   void solve(Eigen::VectorXd& step) noexcept;
 
-  /// Newton step of the tooth points [m]. The first call after `refactor` also computes the rates by both angles,
-  /// because a solve with three columns costs little more than one with one column.
+  /// Newton step of the tooth points [m]. The first call after `refactor` also computes the derivatives of the points
+  /// by both angles, because a solve with three columns costs little more than a solve with one.
   const Eigen::VectorXd& newtonStep() noexcept;
 
-  /// Moves the rates and the stiffness that belong to the last `refactor` to the state.
+  /// Moves the derivatives and the stiffness of the last `refactor` to the state.
   void moveSensitivities(RingState& state) noexcept;
 
   const RingForces& forces() const noexcept { return forces_; }
@@ -62,7 +62,7 @@ private:
   RingForces forces_;
   std::vector<char> factored_meshed_;
   Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact
-  // Whether the rates of the last factored tangent are computed, and the results of this tangent.
+  // Whether the derivatives by both angles of the last factored tangent are computed, and results of this tangent.
   bool rates_known_{};
   Eigen::VectorXd step_;
   Eigen::VectorXd by_wave_generator_;
@@ -107,7 +107,7 @@ struct EquilibriumGoal
 {
   double residual;     ///< largest allowed out-of-balance force component on a tooth [N]
   double guess;        ///< largest force component at which a first guess is accepted without a Newton step [N]
-  bool present_rates;  ///< whether rates and stiffness must belong to the teeth that are now in contact
+  bool present_rates;  ///< whether derivatives and stiffness must be those of the present contacts
 };
 
 /// Newton's method on the forces of the ring with the analytic tangent and a line search. The method uses the factors

@@ -91,7 +91,7 @@ struct SurfaceTable
   double ratio{};             ///< nominal ratio [-]
   int columns{};              ///< number of equal intervals of u in a pitch
   std::vector<double> lines;  ///< v of the lines, ascending [rad]
-  SurfaceNodes nodes;         ///< columns + 1 nodes for each line; the last equals the first
+  SurfaceNodes nodes;         ///< columns + 1 nodes for each line (for each v); the last equals the first
   ToothResponse teeth;        ///< table of the forces of the teeth over the same range, with lines of its own
   GridChecks checks{};
 };

@@ -320,7 +320,7 @@ SolveStatus RingEquilibrium::solvePredicted() noexcept
   if (prediction_.fromKept())
   {
     goal_.guess = goal_.residual;  // no tighter limit, because this guess's error does not enter the next guess
-    now_.cup_stiffness = 0.0;      // the rates do not belong to the present teeth
+    now_.cup_stiffness = 0.0;      // the derivatives are not those of the present teeth
     if (!goal_.present_rates)
     {
       prediction_.takeKeptRates(now_);

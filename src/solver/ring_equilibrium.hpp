@@ -37,8 +37,8 @@ public:
   /// this function if the caller did not call it after the change.
   SolveStatus updateModel() noexcept;
 
-  /// Computes rates and stiffness at the present shape. After `moveTo`, rates and stiffness are those of the shape
-  /// before the last Newton step. @returns false and changes nothing if the tangent has no inverse.
+  /// Computes byWaveGenerator(), byOutput() and stiffness() at the present shape. After `moveTo` the three are those of
+  /// the shape before its last Newton step. @returns false and changes nothing if the tangent has no inverse.
   bool refreshSensitivities() noexcept;
 
   /// Solves for the equilibrium at another position from the present one.
@@ -54,8 +54,8 @@ public:
   /// Calls `moveTo`. If it fails, calls `descend` (with balls only). If no call succeeds, calls `reinsert`.
   SolveStatus reach(const DrivePosition& target) noexcept;
 
-  /// Solves like `reach`, but with ten times the tolerance, which suffices for `torques` in a step of motion. Rates and
-  /// stiffness may belong to a nearby state.
+  /// Solves like `reach`, but with ten times the tolerance, which suffices for `torques` in a step of motion.
+  /// byWaveGenerator(), byOutput() and stiffness() may belong to a nearby state.
   SolveStatus follow(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return *model_; }

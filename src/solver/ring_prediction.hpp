@@ -30,17 +30,17 @@ public:
   /// Forgets the last guess and all stored states. Must be called if the state was not solved from the last guess.
   void forget() noexcept;
 
-  /// Whether the last guess started from a stored state. Then the rates of `state` do not belong to its teeth.
+  /// Whether the last guess started from a stored state. Then the derivatives in `state` are not those of its teeth.
   bool fromKept() const noexcept { return from_.kept >= 0; }
 
-  /// Copies rates and stiffness of the stored state of the last guess to `state`.
+  /// Copies the derivatives and the stiffness of the stored state that the last guess started from to `state`.
   void takeKeptRates(RingState& state) const noexcept;
 
   /// Stores a solved state for later guesses.
   void keep(const RingState& state) noexcept;
 
 private:
-  /// Part of a stored state; kept_vectors_ and kept_spaces_ hold its points, rates and spaces.
+  /// Part of a stored state; kept_vectors_ and kept_spaces_ hold its points, their derivatives and the spaces.
   struct Kept
   {
     bool known{ false };
@@ -71,8 +71,8 @@ private:
   bool guessed_{ false };
   Source from_;             // source of the last guess
   std::vector<Kept> kept_;  // stored states over one pitch
-  // For each known stored state three columns: points of the first half of the teeth, their rates by wave generator
-  // angle, and their rates by output angle. The columns of kept_spaces_ hold the spaces of all teeth.
+  // For each known stored state three columns: points of the first half of the teeth, their derivatives by wave
+  // generator angle, and their derivatives by output angle. The columns of kept_spaces_ hold the spaces of all teeth.
   Eigen::MatrixXd kept_vectors_;
   Eigen::MatrixXi kept_spaces_;
   Eigen::VectorXd guess_;        // last guess without correction [m]

@@ -87,7 +87,7 @@ struct RingState
   Eigen::VectorXd by_wave_generator;
   Eigen::VectorXd by_output;  ///< derivatives of the tooth points in equilibrium by output angle [m/rad]
   Eigen::Matrix2d stiffness;  ///< see RingEquilibrium::stiffness [N.m/rad]
-  /// slope of the cup for which rates and stiffness are valid [N.m/rad]; 0: rates and stiffness are not valid
+  /// slope of the cup for which derivatives and stiffness are valid [N.m/rad]; 0: derivatives and stiffness are invalid
   double cup_stiffness{};
   double residual{};  ///< largest out-of-balance force component on a tooth [N]
 };

@@ -43,8 +43,8 @@ std::string adviceOf(const SolveStatus& status)
     return "the teeth do not carry the load. Reduce the load";
   }
   return status.code == SolveCode::ITERATION_LIMIT ?
-             "take smaller steps, or raise solver.max_step_cuts" :
-             "take smaller steps, or reduce the load, under which the teeth may be about to jump";
+             "take smaller steps of the angles, or raise solver.max_step_cuts" :
+             "take smaller steps of the angles, or reduce the load, under which the teeth may be about to jump";
 }
 }  // namespace
 

@@ -111,7 +111,7 @@ struct ToothResponse
   int columns{};              ///< number of equal intervals of u in a pitch
   double pitch{};             ///< tooth pitch of the flexspline [rad]
   double ratio{};             ///< nominal ratio [-]
-  std::vector<double> lines;  ///< v of the lines, ascending [rad]; empty: there is no table
+  std::vector<double> lines;  ///< v of the lines (nodes of equal v), ascending [rad]; empty: there is no table
   /// for each line columns + 1 nodes, for each node all quantities, for each quantity the stored teeth
   SharedValues<float> values;
   GridChecks checks{};

@@ -20,7 +20,7 @@ namespace hjt
 struct SurfaceBuild
 {
   SurfaceTable table;
-  std::string failure_reason;  ///< empty: the table is valid
+  std::string failure_reason;  ///< reason why there is no table; empty: the table is valid
   int solves{};                ///< number of solved equilibria of the ring
 };
 
@@ -57,7 +57,7 @@ constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
 struct DeviationBuild
 {
   DeviationTable table;
-  std::string failure_reason;  ///< empty: the table is valid
+  std::string failure_reason;  ///< reason why there is no table; empty: the table is valid
   int solves{};                ///< number of solved equilibria of the ring
 };
 
@@ -76,7 +76,7 @@ DeviationBuild buildDeviations(const Parameters& parameters, const JointModel& e
 struct BallBuild
 {
   BallTable table;
-  std::string failure_reason;  ///< empty: the table is valid
+  std::string failure_reason;  ///< reason why there is no table; empty: the table is valid
 };
 
 /// Tabulates the effect of a ball that drops by up to `deepest` [m], for v of `lowest` ... `highest` [rad].

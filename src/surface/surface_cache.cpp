@@ -241,7 +241,7 @@ void tellMisses(const std::string& what, const GridChecks& checks, const Surface
   {
     tell(source, what + ": " + std::to_string(checks.missed) + " of " + std::to_string(checks.made) +
                      " checks between its nodes miss the tolerance. The largest error is " +
-                     roundedText(checks.worst, 2) + " tolerances (docs/response_surface.md)");
+                     roundedText(checks.worst, 2) + " times the tolerance (docs/response_surface.md)");
   }
 }
 

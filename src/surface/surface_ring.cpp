@@ -123,7 +123,7 @@ std::string tooManyPoints(const SurfaceParameters& parameters, std::size_t most)
   const auto named = [](const char* key, double value) { return std::string(key) + " = " + numberText(value); };
   return "a table that meets its tolerances would have more than " + std::to_string(most) +
          " points. Fewer points are enough for fewer teeth, a smaller wave, smaller torque limits or, if teeth differ, "
-         "smaller errors and faults (" +
+         "smaller errors of manufacture and faults (" +
          named("gear.teeth_flexspline", parameters.gear.teeth_flexspline) + ", " +
          named("gear.wave_amplitude", parameters.gear.wave_amplitude) + ", " +
          named("motor.torque_limit", parameters.motor.torque_limit) + ", " +

@@ -86,8 +86,8 @@ public:
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
   /// Tolerance of a table's friction at the motor [N.m]: the tolerance of the motor torque. For a wave generator on
-  /// balls the tolerance is at least 1 % of the friction, because a tooth that begins to touch changes all rates by
-  /// some per cent, which no grid resolves.
+  /// balls the tolerance is at least 1 % of the friction, because a tooth that begins to touch changes all derivatives
+  /// of the tooth points by some per cent, which no grid resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
   /// Friction torque of ring and bearing at the motor of a slow drive, with static friction of the flanks [N.m].

@@ -172,7 +172,7 @@ void ratchet(const Fault& fault, const Parameters& parameters, JointModel& joint
   mesh.tipLoss().array() += fault.severity * parameters.fault_scale.ratcheting_tip_loss;
 }
 
-/// The lobes wear, because they carry the largest force. This reduces the mean radius and loosens the bearing's races.
+/// The lobes wear, because they carry the largest force. Wear reduces the mean radius and loosens the bearing's races.
 void wearWaveGenerator(const Fault& fault, const Parameters& parameters, JointModel& joint) noexcept
 {
   const FaultScaleParameters& scale = parameters.fault_scale;

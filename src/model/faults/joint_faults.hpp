@@ -22,9 +22,9 @@ enum FaultPart : unsigned
 };
 unsigned partsOf(const Fault& fault, const GearParameters& gear) noexcept;
 
-/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim (false). This depends on the backup
-/// ratio rim thickness / tooth height (thesis 3.4.2). Above 1 the crack runs through the tooth, below 0.4 into the rim.
-/// Between 0.4 and 1 the function assumes the worse case, the rim.
+/// Whether a crack at a tooth's root runs through the tooth (true) or into the rim (false). The answer depends on the
+/// backup ratio, rim thickness / tooth height (thesis 3.4.2): above 1 the crack runs through the tooth, below 0.4 into
+/// the rim. Between 0.4 and 1 the function assumes the worse case, the rim.
 bool rootCrackRunsThroughTooth(const GearParameters& gear) noexcept;
 
 /// Joint with its active faults. Each change of the faults starts from the sound joint, so that a removed fault leaves
