@@ -154,7 +154,7 @@ private:
   {
     CupFriction::State cup;
     double share{};        // share of its full torque that the friction at the motor shaft has, -1 ... 1
-    double motor_angle{};  // [rad]
+    double motor_angle{};  // motor angle after the motion [rad]
     Brake::Pin pin;
   };
 
@@ -179,6 +179,6 @@ private:
   // derivatives of the rim's mean rotation by motor and output angle, if the cup's friction has a state [-]
   Eigen::Vector2d cup_rates_{ 0.0, 0.0 };
   double temperature_;  // temperature for which viscosity_ is valid [degC]
-  double viscosity_;    // [m^2/s]
+  double viscosity_;    // effective viscosity of the bearing's grease [m^2/s]
 };
 }  // namespace hjt

@@ -113,8 +113,8 @@ public:
   /// Sets the joint to rest in its equilibrium under an arm's torque [N.m]. @returns false if there is no equilibrium.
   bool reset(double arm_torque = 0.0) noexcept;
 
-  /// Advances one step under `inputs`, which act from the beginning of the step. The motor's speed limit and current
-  /// loop limit and delay the wanted torque. @returns false if the ring did not converge; the joint then rests.
+  /// Advances one step under `inputs`, which act from the beginning of the step. The motor's speed limit reduces the
+  /// wanted torque, and the current loop delays it. @returns false if the ring did not converge; the joint then rests.
   ///
   /// A step that is too long for the joint's fastest oscillation is divided into `substeps()` equal substeps.
   /// Parameters and an arm's inertia determine the number of substeps, so that live and offline runs are equal. The
@@ -150,7 +150,7 @@ public:
   /// energy that all friction has dissipated [J]
   double dissipatedEnergy() const noexcept { return x_[joint_state::DISSIPATED]; }
   double energyThroughput() const noexcept { return throughput_; }  ///< sum of |work| of motor, load and friction [J]
-  int substeps() const noexcept { return substeps_; }               ///< 1 ... MAX_SUBSTEPS
+  int substeps() const noexcept { return substeps_; }               ///< substeps of a step, 1 ... MAX_SUBSTEPS
   /// Phase of the fastest oscillation of motor against output in a substep, at the ring's present stiffness [rad].
   double phaseAdvance() const noexcept;
   bool isCoarse() const noexcept;  ///< whether phaseAdvance() exceeds MAX_PHASE_ADVANCE (in an arm: ..._IN_ARM)

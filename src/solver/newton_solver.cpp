@@ -148,7 +148,7 @@ EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
 bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& state) noexcept
 {
   constexpr int MAX_SHIFTS = 30;
-  constexpr double FIRST_SHIFT = 1e-6;  // as a share of the stiffest diagonal entry [-]
+  constexpr double FIRST_SHIFT = 1e-6;  // first increase of the diagonal over its stiffest entry [-]
   double shift = 0.0;
   for (int i = 0; i < MAX_SHIFTS; ++i)
   {

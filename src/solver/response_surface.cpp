@@ -36,7 +36,7 @@ LineIndex::LineIndex(const std::vector<double>& lines)
 
 HJT_VECTOR_CLONES SurfaceEnergy SurfaceCell::energy() const noexcept
 {
-  // Two cubics along v, one for the energy and one for its slope by u, evaluated at the position within the cell.
+  // Values of two cubics along v, for the energy and for the slope of the energy by u, at the position within the cell.
   using Pair = Eigen::Array2d;
   const double h = 1.0 / per_height_;
   const double v = v_;

@@ -113,7 +113,7 @@ struct DeviationTable
   GridChecks checks{};
 };
 
-/// Finds the line of a table below a position v, in constant time.
+/// Finds the line of a table (nodes of equal v) below a position v, in constant time.
 class LineIndex
 {
 public:
@@ -229,7 +229,7 @@ public:
 
   struct Place : Cells
   {
-    double at{};  ///< v [rad]
+    double at{};  ///< v at the place, see SurfaceTable [rad]
     BallDrops::Change balls;
     std::array<Cells, MAX_SHARES - 1> others;  ///< positions on all shares except the first
     std::size_t other_count{};
@@ -289,8 +289,8 @@ public:
   }
   const std::optional<BallDrops>& balls() const noexcept { return balls_; }
   const std::vector<Share>& shares() const noexcept { return shares_; }  ///< empty: the surface has its own tables
-  double lowest() const noexcept { return lowest_; }                     ///< least v [rad]
-  double highest() const noexcept { return highest_; }                   ///< largest v [rad]
+  double lowest() const noexcept { return lowest_; }    ///< least v of the range, see SurfaceTable [rad]
+  double highest() const noexcept { return highest_; }  ///< largest v of the range, see SurfaceTable [rad]
 
 private:
   /// Tables with their indices, which several surfaces share and which do not change.

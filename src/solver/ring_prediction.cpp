@@ -13,7 +13,7 @@ namespace
 constexpr int KEPT = 256;            // number of stored states over a pitch
 constexpr double MAX_PITCHES = 1e9;  // largest number of pitches that is converted to int
 
-constexpr int VECTORS = 3;  // vectors of a stored state
+constexpr int VECTORS = 3;  // number of vectors of a stored state
 
 /// Index of the stored state for a wave generator angle in pitches.
 int placeOf(double pitches) noexcept

@@ -16,7 +16,7 @@ namespace hjt
 /// backwards, with the tangents of both states. The derivative by the output angle gives the effect of a change of the
 /// torsion. If the ring repeats after half a turn, the prediction stores the states of the last pitches by their
 /// position in the pitch, and the guess follows the tangent of the nearest stored state. The error of the last guess
-/// corrects the next guess as far as the last two errors were similar. Errors by single teeth are not similar.
+/// corrects the next guess as far as the last two errors were similar. Errors that single teeth cause are not similar.
 class RingPrediction
 {
 public:

@@ -91,7 +91,7 @@ struct GridChecks
 };
 
 /// Forces and positions of all teeth of the ring in equilibrium, for a gear with equal teeth, over u and v as in
-/// SurfaceTable. One pitch further, each tooth has the values of the preceding tooth. The table is plain data.
+/// SurfaceTable. One tooth pitch further, each tooth has the values of the preceding one. The table is plain data.
 struct ToothResponse
 {
   /// Quantities of each tooth, in the order of storage.

@@ -131,7 +131,7 @@ private:
     double energy, by_drop, contact_force, flanks;
   };
 
-  /// Values of the ring at its present position, with the derivative of the energy for the present `share_`.
+  /// Values of the ring at its present position, with the derivative of the energy by the relative drop.
   Sample sample()
   {
     const SurfaceNode node = ring_.measure();

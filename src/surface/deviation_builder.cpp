@@ -169,7 +169,7 @@ private:
 
 using Node = SurfaceNode;
 using Line = DeviationLine;
-using Lines = std::map<double, Line>;  // lines by their v [rad]
+using Lines = std::map<double, Line>;  // lines by their v, see SurfaceTable [rad]
 using Rings = DeviationRings;
 using Torques = DeviationCheck::Torques;
 
@@ -237,7 +237,7 @@ private:
   std::size_t next(std::size_t pitch) const { return pitch + 1 < pitches_ ? pitch + 1 : 0; }
   std::size_t last(std::size_t pitch) const { return pitch > 0 ? pitch - 1 : pitches_ - 1; }
 
-  /// Number of points of a line in the wanted pitches.
+  /// Number of points of a line in the pitches of `wanted`.
   std::size_t pointsOf(const Set& wanted) const
   {
     std::size_t points = 0;
@@ -248,9 +248,9 @@ private:
     return points;
   }
 
-  /// Measures the deviations on the line at `v` for the wanted pitches: first at their edges, then, on the way back,
-  /// within pitches that have deviations or a neighbour with deviations. @returns false and stops all tasks if the ring
-  /// has no equilibrium.
+  /// Measures the deviations on the line at `v` for the pitches of `wanted`: first at their edges, then, with the motor
+  /// turning back, within pitches that have deviations or a neighbour with deviations. @returns false and stops all
+  /// tasks if the ring has no equilibrium.
   bool measureLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const bool there = !failed_ && rings.leadTo(v, longest_way_);
@@ -315,7 +315,7 @@ private:
     return good;
   }
 
-  /// Measures a line if the table has room for it.
+  /// Measures a line. If the table has no room for the line, stops all tasks.
   bool addLine(Rings& rings, double v, const Set& wanted, Line& line)
   {
     const std::size_t size = pointsOf(wanted) * (mirror_ ? 2 : 1);
@@ -513,7 +513,7 @@ private:
 
   bool swapsLobes() const { return static_cast<int>(pitches_) <= model_.ring.rest.teeth() / 2 + 1; }
 
-  /// Runs the tasks from numbers.first to numbers.second - 1. `from`, `to`: progress before and after them, 0 ... 1.
+  /// Runs the tasks from numbers.first to numbers.second - 1. `from`, `to`: progress before and after these, 0 ... 1.
   void run(std::pair<std::size_t, std::size_t> numbers, double from, double to,
            const std::function<void(Rings&, std::size_t)>& task)
   {
@@ -554,7 +554,7 @@ private:
   const Torques share_{ 5e-3, 7e-3 };      // tolerance as a share of the largest deviation on a line: output, motor [-]
   Torques largest_{ Torques::Zero() };     // largest deviations on the coarse lines [N.m]
   double longest_way_{};                   // largest change of v between two solves [rad]
-  std::atomic<std::size_t> points_{ 0 };   // points of all lines
+  std::atomic<std::size_t> points_{ 0 };   // number of points of all lines
   std::atomic<int> solves_{ 0 };
   std::atomic<bool> failed_{ false };
   std::atomic<bool> too_many_{ false };

@@ -70,7 +70,7 @@ struct DeviationRings
     return nodes;
   }
 
-  /// Measures the ring of the gear at a column of the last `measureEqual`. @returns false without an equilibrium.
+  /// Measures the ring of the gear at a column of the last `measureEqual`. @returns false if it has no equilibrium.
   bool measureActual(std::size_t pitch, std::size_t column, SurfaceNode& node)
   {
     constexpr double NEAR = 0.6;  // largest turn over which a difference of shapes serves as a guess [pitches]

@@ -16,7 +16,7 @@ namespace
 {
 using Node = SurfaceNode;
 using Line = SurfaceLine;
-using Lines = std::map<double, Line>;  // lines by their v [rad]
+using Lines = std::map<double, Line>;  // lines by their v, see SurfaceTable [rad]
 
 constexpr double TORQUE_MARGIN = 2.0;  // largest torque of the table over the torque limit [-]
 constexpr int COARSE_LINES = 32;       // approximate number of lines on each side of no load before refinement

@@ -40,8 +40,8 @@ SurfaceBuild buildSurface(const Parameters& parameters, const JointModel& model,
 /// and `coarse` has only v >= 0.
 ///
 /// Columns and lines are doubled until the values between them meet the tolerance. The tolerance of a force is
-/// TOOTH_FORCE_SHARE of the largest force of its quantity, or LEAST_TOOTH_FORCE if this is larger. `solves` counts
-/// equilibria. The result has no lines if the ring has no equilibrium or the table would exceed MAX_TOOTH_VALUES.
+/// TOOTH_FORCE_SHARE of the largest force of its quantity, or LEAST_TOOTH_FORCE if this is larger. `solves`: increased
+/// by each solve. The result has no lines if the ring has no equilibrium or the table would exceed MAX_TOOTH_VALUES.
 ToothResponse buildToothResponse(const SurfaceParameters& parameters, const JointModel& model,
                                  const std::vector<double>& coarse, double step, bool mirrored, unsigned threads,
                                  std::atomic<int>& solves);

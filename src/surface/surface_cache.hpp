@@ -33,7 +33,7 @@ public:
   SurfacePool& operator=(const SurfacePool&) = delete;
 
   /// Surface with this key, which may be null. `make` is called if the pool does not have this surface. If `make`
-  /// throws, its caller gets the exception, and the next caller calls its own `make`.
+  /// throws, `obtain` throws the exception, and the next call of `obtain` calls its own `make`.
   virtual Surface obtain(const std::string& key, const std::function<Surface()>& make);
 
 private:

@@ -43,7 +43,7 @@ public:
   /// Inserts the wave generator at the motor and output angle 0. @returns false if the insertion did not converge.
   bool insert();
 
-  /// Moves to a motor angle and v = output angle - motor angle / ratio [rad]. @returns false without an equilibrium.
+  /// Moves to a motor angle and v = output angle - motor angle / ratio [rad]. @returns false if it has no equilibrium.
   bool moveTo(double motor_angle, double v);
 
   /// Moves like `moveTo` above, from a guess of the tooth points at the new position [m].
@@ -81,8 +81,8 @@ public:
   /// Tolerance of a table's output torque at a node [N.m]: the torque that twists the gear by ANGLE_TOLERANCE.
   double outputTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Tolerance of a table's motor torque at a node [N.m]: a share of the motor's torque limit or, if this limit is 0,
-  /// of the load's torque limit over the ratio.
+  /// Tolerance of a table's motor torque at a node [N.m]: 1e-4 of the motor's torque limit or, if this limit is 0, of
+  /// the load's torque limit over the ratio. Larger above the torque limit.
   double motorTolerance(const SurfaceNode& node) const noexcept;
 
   /// Tolerance of a table's friction at the motor [N.m]: the tolerance of the motor torque. For a wave generator on

@@ -31,9 +31,9 @@ namespace
 class MappedFile
 {
 public:
-  /// Maps a regular file of this user that others cannot write. Returns null for any other file, and for a file that is
-  /// empty or larger than `most` bytes. Does not block, even for a FIFO. Sets the times of the file to now, which marks
-  /// the file as used.
+  /// Maps a regular file of this user that other users cannot write. Returns null for any other file, and for a file
+  /// that is empty or larger than `most` bytes. Does not block, even for a FIFO. Sets the times of the file to now,
+  /// which marks the file as used.
   static std::shared_ptr<const MappedFile> ofOwn(const std::string& path, std::size_t most);
 
   ~MappedFile();

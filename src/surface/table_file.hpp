@@ -10,8 +10,8 @@
 
 namespace hjt
 {
-/// Checksum of a table's file, which finds damage as well as textHash. The checksum is fast, because it processes words
-/// in independent rows. Speed matters, because the twin reads a file of 30 MB at each start.
+/// Checksum of a table's file, which finds damage as surely as textHash does. The checksum is fast, because it
+/// processes words in independent rows. Speed matters, because the twin reads a file of 30 MB at each start.
 std::uint64_t tableChecksum(std::string_view bytes);
 
 /// Reads a table from its file, which holds the header, the numbers in the machine's format, and the checksum of header

@@ -21,7 +21,7 @@ constexpr int MAX_COLUMNS = 32;
 constexpr int MAX_HALVINGS = 4;
 
 using Values = std::vector<float>;
-using Lines = std::map<double, Values>;  // values of the lines by their v [rad]
+using Lines = std::map<double, Values>;  // values of the lines by their v, see SurfaceTable [rad]
 
 class ToothResponseBuilder
 {
