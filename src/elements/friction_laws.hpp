@@ -228,7 +228,7 @@ public:
 
 private:
   BearingParameters parameters_;
-  double preload_;  // [N]
+  double preload_;  // F_race, less the loss by wear [N]
   double viscosity_factor_{ 1.0 };
 };
 

@@ -65,7 +65,7 @@ public:
   /// Torque at a temperature [degC] over the torque of an equal current at 25 degC [-].
   double torqueFactor(double temperature) const noexcept
   {
-    constexpr double REFERENCE = 25.0;  // [degC]
+    constexpr double REFERENCE = 25.0;  // temperature at which the factor is 1 [degC]
     return 1.0 + parameters_.torque_temperature_coefficient * (temperature - REFERENCE);
   }
 
@@ -157,7 +157,7 @@ private:
   // gap between shaft and pin that counts as rounding, over half the play [-]
   static constexpr double CONTACT = 1e-9;
 
-  double holding_torque_;  // [N.m]
-  double half_play_;       // [rad]
+  double holding_torque_;  // torque above which the brake slips [N.m]
+  double half_play_;       // half of the play b [rad]
 };
 }  // namespace hjt

@@ -24,7 +24,7 @@ void MeshFriction::addTerms(const ToothMesh& mesh, const ToothMesh::Scratch& fou
     double factor = tooth_factor_[contact.tooth];
     if (rates.shape.copies() > 1)
     {
-      factor += tooth_factor_[contact.tooth + rates.shape.solved];  // the tooth half a turn away slides equally fast
+      factor += tooth_factor_[contact.tooth + rates.shape.solved];  // the tooth half a turn away has the same slip
     }
     friction.flank_load[friction.flanks++] = factor * std::abs(force);
     friction.terms.push_back({ 0.0, slip });

@@ -82,7 +82,7 @@ public:
 private:
   double friction_static_;
   double friction_kinetic_;
-  double stribeck_velocity_;  // [m/s]
+  double stribeck_velocity_;  // sliding speed scale of the Stribeck curve [m/s]
   Eigen::VectorXd tooth_factor_;
 };
 

@@ -59,7 +59,7 @@ public:
 
 private:
   double stiffness_;    // Hertz' stiffness of a ball [N/m^1.5]
-  double tooth_pitch_;  // [rad]
+  double tooth_pitch_;  // angle from one tooth to the next [rad]
 };
 
 /// Contact of the flexspline's inner rim with the wave generator, an ellipse with the semi-axes r0 + w and r0 - w,

@@ -31,7 +31,7 @@ public:
   {
   }
 
-  /// Copy of this solver with another inertia of the motor [kg.m^2].
+  /// Copy of this solver with `inertia` as the inertia of the motor [kg.m^2].
   DryFriction withMotor(double inertia) const { return { Eigen::Vector2d(inertia, inertia_[1]), width_ }; }
 
   void setOutput(double inertia) noexcept { inertia_[1] = inertia; }  ///< sets the inertia of the output [kg.m^2]

@@ -17,14 +17,14 @@ using JointState = Eigen::Matrix<double, 8, 1>;
 
 namespace joint_state
 {
-constexpr int MOTOR_ANGLE = 0;   ///< [rad]
-constexpr int OUTPUT_ANGLE = 1;  ///< [rad]
-constexpr int MOTOR_SPEED = 2;   ///< [rad/s]
-constexpr int OUTPUT_SPEED = 3;  ///< [rad/s]
-constexpr int MOTOR_WORK = 4;    ///< work of the motor's torque [J]
-constexpr int LOAD_WORK = 5;     ///< work done on the external load [J]
-constexpr int DISSIPATED = 6;    ///< energy that all friction has dissipated [J]
-constexpr int DRIVE_TORQUE = 7;  ///< torque of the motor's current at 25 degC [N.m]
+constexpr int MOTOR_ANGLE = 0;   ///< index of the motor's angle [rad]
+constexpr int OUTPUT_ANGLE = 1;  ///< index of the output's angle [rad]
+constexpr int MOTOR_SPEED = 2;   ///< index of the motor's speed [rad/s]
+constexpr int OUTPUT_SPEED = 3;  ///< index of the output's speed [rad/s]
+constexpr int MOTOR_WORK = 4;    ///< index of the work of the motor's torque [J]
+constexpr int LOAD_WORK = 5;     ///< index of the work done on the external load [J]
+constexpr int DISSIPATED = 6;    ///< index of the energy that all friction has dissipated [J]
+constexpr int DRIVE_TORQUE = 7;  ///< index of the torque of the motor's current at 25 degC [N.m]
 }  // namespace joint_state
 
 /// Right-hand side of the joint's equation of motion. Motor and output are rigid, and the ring between them is always
@@ -54,13 +54,12 @@ public:
   /// Whether the present equilibrium is that of the surface.
   bool onSurface() const noexcept { return on_surface_; }
   const ResponseSurface* surface() const noexcept { return surface_; }            ///< surface in use; null: none
-  const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< valid if onSurface()
+  const ResponseSurface::Place& surfacePlace() const noexcept { return place_; }  ///< place; valid if onSurface()
 
   /// Present angles of the joint. While the joint is on the surface, the full ring may be at other angles.
   DrivePosition position() const noexcept { return { motor_angle_, output_angle_, model_->ring.gear.wave_amplitude }; }
 
-  /// Solves the equilibrium at these angles, from the surface or the full ring. On failure the last converged ring
-  /// stays.
+  /// Solves the equilibrium at two angles [rad], from the surface or the full ring. On failure the last ring stays.
   SolveStatus place(double motor_angle, double output_angle) noexcept;
 
   /// Takes the equilibrium from the surface if the joint is on the surface, or if the torques of surface and ring
@@ -87,7 +86,7 @@ public:
     return model_->motor.rippled(model_->motor.torqueFactor(inputs.temperature), motor_angle_);
   }
 
-  /// Torque by the friction at the motor shaft that builds up over the presliding angle, at the present angles [N.m].
+  /// Torque of the friction at the motor shaft that builds up over the presliding angle, at the present angles [N.m].
   double preslidingTorque() const noexcept { return -now_.share * friction_.presliding; }
 
   /// Stiffness by friction with a state (cup and presliding) by motor and output angle, at the present angles

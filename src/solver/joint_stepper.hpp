@@ -135,8 +135,8 @@ public:
   /// See JointDynamics::useSurface.
   [[nodiscard]] bool useSurface(const ResponseSurface* surface) noexcept;
 
-  double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< [rad]
-  double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< [rad]
+  double motorAngle() const noexcept { return x_[joint_state::MOTOR_ANGLE]; }    ///< angle of the motor [rad]
+  double outputAngle() const noexcept { return x_[joint_state::OUTPUT_ANGLE]; }  ///< angle of the output [rad]
   const Eigen::Vector2d& speeds() const noexcept { return speeds_; }             ///< speeds of motor and output [rad/s]
   const Eigen::Vector2d& frictionTorque() const noexcept { return friction_; }   ///< see Leapfrog::frictionTorque
   /// torque of the motor's current at 25 degC [N.m]

@@ -144,7 +144,7 @@ EnergyDescent::EnergyDescent(const RingModel& model, double tolerance)
 {
 }
 
-/// Computes a step on which the energy decreases. Stores it in `step_`, and its start in `start_points_`.
+/// Computes a step on which the energy decreases, stores the step in `step_`, and its start in `start_points_`.
 bool EnergyDescent::findWayDown(RingLinearisation& system, const RingState& state) noexcept
 {
   constexpr int MAX_SHIFTS = 30;
@@ -248,7 +248,7 @@ bool EnergyDescent::pairsAgain(RingState& state) noexcept
 SolveStatus EnergyDescent::descend(RingLinearisation& system, RingState& state) noexcept
 {
   constexpr int MAX_STEPS = 200;         // a snap of teeth needs up to 34 steps; a running twin needs a limit
-  constexpr double FIRST_DAMPING = 1e6;  // [N/m]
+  constexpr double FIRST_DAMPING = 1e6;  // damping of the first step [N/m]
   constexpr double MIN_DAMPING = 1e-3;
   constexpr double MAX_DAMPING = 1e16;
   SolveStatus status;

@@ -34,7 +34,7 @@ public:
   /// Whether the slopes changed since `refactor`.
   bool slopesChanged(bool all_teeth) const noexcept;
 
-  /// Computes the step of the tooth points from the forces and the factored tangent [m].
+  /// Computes the Newton step of the tooth points from the forces and the factored tangent [m].
   void solve(Eigen::VectorXd& step) noexcept;
 
   /// Newton step of the tooth points [m]. The first call after `refactor` also computes the derivatives of the points
@@ -96,7 +96,7 @@ private:
   bool pairsAgain(RingState& state) noexcept;
 
   const RingModel* model_;
-  double tolerance_;  // [N]
+  double tolerance_;  // largest out-of-balance force of an equilibrium [N]
   Eigen::VectorXd start_points_;
   Eigen::VectorXd start_forces_;
   Eigen::VectorXd step_;

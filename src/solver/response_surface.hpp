@@ -33,8 +33,8 @@ public:
     RING_TORQUE,               // friction torque of outer race and flexing rim at the motor [N.m]
     VISCOUS,                   // viscous matrix: motor-motor, motor-output, output-output [N.m.s/rad]
     FLANKS = VISCOUS + 3,      // torque (2 values [N.m]) and rms slip (2 values [m/rad]) of each group of flanks
-    VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // see RingResponse [-]
-    OUTPUT_STIFFNESS,                                                  // see RingResponse [N.m/rad]
+    VELOCITY_RATIO = FLANKS + 4 * RingFrictionResponse::FLANK_GROUPS,  // output over motor speed at constant load [-]
+    OUTPUT_STIFFNESS,                                                  // stiffness of the output, motor held [N.m/rad]
     TEETH_LOADED,                                                      // number of teeth that carry mesh force [-]
     LOBE_FORCE,                                                        // mesh force of each lobe [N]
     VALUES = LOBE_FORCE + 2
@@ -201,7 +201,7 @@ public:
 
   static constexpr std::size_t MAX_SHARES = 4;
 
-  /// Share of another surface in an interpolated surface.
+  /// Share of one surface in a surface that is interpolated between several surfaces.
   struct Share
   {
     std::shared_ptr<const ResponseSurface> surface;  ///< surface without shares and balls

@@ -16,8 +16,8 @@ namespace hjt
 /// The ring in equilibrium at a position of wave generator and circular spline.
 ///
 /// Newton's method (NewtonSolver) starts from a prediction (RingPrediction). If a move to new angles fails, it is
-/// divided into shorter moves. If these fail too, the last state stays. An insertion that fails is repeated by
-/// minimisation of the energy (EnergyDescent). A tooth changes its space only between solves, out of contact.
+/// divided into shorter moves. If the shorter moves fail too, the last state stays. An insertion that fails is repeated
+/// by minimisation of the energy (EnergyDescent). A tooth changes its space only between solves, out of contact.
 class RingEquilibrium
 {
 public:
@@ -41,14 +41,14 @@ public:
   /// the shape before its last Newton step. @returns false and changes nothing if the tangent has no inverse.
   bool refreshSensitivities() noexcept;
 
-  /// Solves for the equilibrium at another position from the present one.
+  /// Moves from the present equilibrium to that at `target`.
   SolveStatus moveTo(const DrivePosition& target) noexcept;
 
-  /// Solves at another position of an unchanged model from a guess of the tooth points [m].
+  /// Solves at `target`, with the model unchanged, from a guess of the tooth points [m].
   SolveStatus moveTo(const DrivePosition& target, const Eigen::VectorXd& guess) noexcept;
 
   /// Minimises the energy at the target, for a ring that snaps so that `moveTo` failed. Teeth that leave their space
-  /// get the nearest space. This is slow. On failure the state does not change.
+  /// get the nearest space. This is slower than `moveTo`. On failure the state does not change.
   SolveStatus descend(const DrivePosition& target) noexcept;
 
   /// Calls `moveTo`. If it fails, calls `descend` (with balls only). If no call succeeds, calls `reinsert`.
@@ -59,7 +59,7 @@ public:
   SolveStatus follow(const DrivePosition& target) noexcept;
 
   const RingModel& model() const noexcept { return *model_; }
-  /// Makes a copy of this object use `copied`, a copy of its model.
+  /// After a copy of a RingEquilibrium: makes the copy use `copied`, a copy of the original's model.
   void setModel(const RingModel& copied) noexcept
   {
     model_ = &copied;
@@ -110,7 +110,7 @@ private:
   RingState halfway_;  // last solved state on the path of the present move
   RingState kept_;     // state before the insertion was repeated
   RingLinearisation system_;
-  double rounding_;   // [N]
+  double rounding_;   // see rounding() [N]
   double tolerance_;  // largest out-of-balance force of an equilibrium [N]
   int max_step_cuts_;
   RingPrediction prediction_;

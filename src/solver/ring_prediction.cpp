@@ -95,7 +95,7 @@ void RingPrediction::keep(const RingState& state) noexcept
           model_->rest.pitchAngle() &&
       std::abs(twistSince(kept, state.position)) < SAME_TWIST)
   {
-    return;  // the stored state is at nearly this position
+    return;  // the stored state is at this position already
   }
   kept.known = true;
   kept.position = state.position;
@@ -116,7 +116,7 @@ double RingPrediction::twistSince(const Kept& kept, const DrivePosition& positio
              model_->rest.pitchAngle();
 }
 
-/// Guesses from the nearest stored state. @returns false and does nothing if no stored state is near enough.
+/// Guesses from the nearest stored state. @returns false and does nothing if no stored state is near `target`.
 bool RingPrediction::guessFromKept(const DrivePosition& target, RingState& state) noexcept
 {
   constexpr double NEAR_TWIST = 2e-5;  // largest difference of twist from a stored state that gives a guess [rad]

@@ -86,7 +86,7 @@ struct RingState
   /// derivatives of the tooth points in equilibrium by wave generator angle [m/rad]
   Eigen::VectorXd by_wave_generator;
   Eigen::VectorXd by_output;  ///< derivatives of the tooth points in equilibrium by output angle [m/rad]
-  Eigen::Matrix2d stiffness;  ///< see RingEquilibrium::stiffness [N.m/rad]
+  Eigen::Matrix2d stiffness;  ///< second derivatives of the energy by both angles, in equilibrium [N.m/rad]
   /// slope of the cup for which derivatives and stiffness are valid [N.m/rad]; 0: derivatives and stiffness are invalid
   double cup_stiffness{};
   double residual{};  ///< largest out-of-balance force component on a tooth [N]

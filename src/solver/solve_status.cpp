@@ -65,7 +65,7 @@ std::string explanationOf(const SolveStatus& status)
   text << failureOf(status.stage) << " (" << nameOf(status.code) << ", ";
   if (status.code == SolveCode::DISENGAGED)
   {
-    text << "no tooth touches";
+    text << "no tooth touches a flank";
   }
   else if (status.stage == SolveStage::BALANCE)
   {

@@ -22,7 +22,7 @@ struct DeviationLine
 {
   std::vector<Strip> strips;                         ///< strip of each pitch; empty if the pitch does not need the line
   Eigen::Array2d largest{ Eigen::Array2d::Zero() };  ///< largest deviations of the torques on output and motor [N.m]
-  double overload{};                                 ///< see SurfaceRing::overload [-]
+  double overload{};                                 ///< factor on the tolerances, see SurfaceRing::overload [-]
   Eigen::Array2d of_the_surface{ Eigen::Array2d::Zero() };  ///< tolerances of the surface's torques [N.m]
 };
 

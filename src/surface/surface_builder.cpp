@@ -253,7 +253,7 @@ private:
     }
   }
 
-  /// Measures the line of the table at `v`. Empty: no equilibrium, too many points, or another task has failed.
+  /// Measures the line of the table at `v`. Empty: no equilibrium, no room for its points, or another task has failed.
   Line measure(LineRing& ring, double v)
   {
     const std::size_t size = (static_cast<std::size_t>(columns_) + 1) * (mirrored_ ? 2 : 1);

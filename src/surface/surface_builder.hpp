@@ -50,7 +50,7 @@ constexpr double TOOTH_FORCE_SHARE = 0.01;                        ///< tolerance
 constexpr double LEAST_TOOTH_FORCE = 0.5;                         ///< least tolerance of a tooth's force [N]
 constexpr std::size_t MAX_TOOTH_VALUES = std::size_t{ 1 } << 24;  ///< number of values as float: 64 MB
 
-/// Largest number of points of a table of deviations: 250 MB. A rim with a small crack needs a sixth of these points.
+/// Largest number of points of a table of deviations: 250 MB. A slightly cracked rim needs a sixth of these points.
 constexpr std::size_t MAX_DEVIATION_POINTS = 1500000;
 
 /// Deviations of a gear from the gear with equal teeth, or the reason why there is no table of them.

@@ -245,7 +245,7 @@ void tellMisses(const std::string& what, const GridChecks& checks, const Surface
   }
 }
 
-/// Reports a new table whose error is much larger than its tolerance.
+/// Reports a new table whose error is more than MUCH times its tolerance.
 void tellMisses(const SurfaceTable& table, const SurfaceSource& source)
 {
   tellMisses("response surface", table.checks, source);

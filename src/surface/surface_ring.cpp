@@ -90,14 +90,14 @@ void groupFlanks(const FrictionTerms& terms, double velocity_ratio, double* grou
 SolverParameters solverOfTables()
 {
   SolverParameters solver;
-  solver.force_tolerance = 1e-4;  // [N]
+  solver.force_tolerance = 1e-4;  // largest out-of-balance force [N]
   solver.max_iterations = 20;
   solver.max_step_cuts = 8;
   return solver;
 }
 
 /// Torque limit of a table at the output [N.m]. The torque of the motor is limited, because the motor of a blocked
-/// wrist could apply 2.6 times the gear's momentary peak torque, which is too large for a table.
+/// wrist could apply 2.6 times the gear's momentary peak torque, more than a table can hold.
 double tabulatedTorque(const SurfaceParameters& parameters)
 {
   const double of_motor = parameters.motor.torque_limit * nominalRatio(parameters.gear);

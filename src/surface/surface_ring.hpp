@@ -22,7 +22,7 @@ struct SurfaceParameters
   MotorParameters motor;
   OutputParameters output;
   InputParameters input;
-  double momentary_peak_torque;  ///< [N.m]
+  double momentary_peak_torque;  ///< momentary peak torque of the gear [N.m]
 };
 
 /// Largest number of points of a SurfaceTable: 85 MB. The shipped gear needs a tenth of these points.
@@ -64,7 +64,7 @@ public:
     return ring_.shape().solved;
   }  ///< number of solved teeth: half of the teeth if the other half is equal; valid after `insert`
 
-  double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< [rad]
+  double motorAngle() const noexcept { return ring_.position().wave_generator_angle; }  ///< present motor angle [rad]
   double pitch() const noexcept { return pitch_; }                                      ///< tooth pitch [rad]
   double ratio() const noexcept { return ratio_; }                                      ///< nominal ratio [-]
   /// The larger one of the torque limits of load and motor, both at the output [N.m]. The motor's limit is at most
@@ -90,7 +90,7 @@ public:
   /// of the tooth points by some per cent, which no grid resolves.
   double frictionTolerance(const SurfaceNode& node) const noexcept;
 
-  /// Friction torque of ring and bearing at the motor of a slow drive, with static friction of the flanks [N.m].
+  /// Friction torque of ring and bearing at the motor near standstill, with the static friction of the flanks [N.m].
   double frictionTorque(const SurfaceNode& node) const noexcept;
 
   /// Friction torque of the flanks at the motor, divided by the coefficient of friction [N.m].

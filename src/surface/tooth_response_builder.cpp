@@ -95,7 +95,7 @@ private:
   std::size_t nodeSize() const { return ToothResponse::QUANTITIES * stored_; }
 
   /// Measures the nodes of the line at `v`. The last node has the values of the first node, shifted by one tooth. Empty
-  /// if the ring has no equilibrium or the table would have too many values.
+  /// if the ring has no equilibrium or the table would exceed MAX_TOOTH_VALUES.
   Values measure(LineRing& line_ring, double v, int columns)
   {
     SurfaceRing& ring = line_ring.ring();

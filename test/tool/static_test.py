@@ -159,7 +159,7 @@ class Stiffness(tool.ToolTest):
 
     def test_a_gear_that_does_not_fit_is_named(self):
         done = self.fail_with(1, ["no equilibrium found for the row of torque 5 N.m: no output angle balances the load "
-                                  "(DISENGAGED, no tooth touches)", "gear.rim_thickness"],
+                                  "(DISENGAGED, no tooth touches a flank)", "gear.rim_thickness"],
                               "stiffness", "--torques", "5", "--config", "golden.yaml", "--set",
                               "gear.rim_thickness=0.4e-3")
         self.assertNotIn("solver.max_iterations", done.stderr)
