@@ -31,7 +31,7 @@ public:
     return std::clamp(command, -parameters_.torque_limit, parameters_.torque_limit);
   }
 
-  /// Whether the speed limit reduces `torque` at `speed`.
+  /// Whether the speed limit reduces `torque` [N.m] at `speed` [rad/s].
   bool fades(double torque, double speed) const noexcept
   {
     return torque * speed > 0.0 && std::abs(speed) > fadeSpeed();

@@ -10,8 +10,8 @@
 
 namespace hjt
 {
-/// Radius of the bearing's outer race minus radius of the rim's bore, when both are free and round [m]. This is the fit
-/// plus the thermal expansion by contact.temperature_difference. > 0: the bearing is tight in the rim.
+/// Radius of the bearing's outer race minus radius of the rim's bore, when both are free and round [m]. The difference
+/// is the fit plus the thermal expansion by contact.temperature_difference. > 0: the bearing is tight in the rim.
 inline double raceFit(const Parameters& parameters) noexcept
 {
   constexpr double EXPANSION = 11.5e-6;  // coefficient of thermal expansion of steel [1/K]

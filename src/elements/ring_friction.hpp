@@ -143,7 +143,7 @@ private:
 struct DashpotPower
 {
   double dissipated{};
-  double supplied{};  ///< power that a wave generator of growing amplitude supplies
+  double supplied{};  ///< power that a wave generator of growing amplitude supplies [W]
 };
 
 /// Dashpots of the ring (thesis eq. 5.1, 5.23, 5.33 with corrected signs).

@@ -103,7 +103,7 @@ private:
   {
     const std::array<double, 4>& cubic;
     double u;       // distance from the start of the interval [m]
-    double beyond;  // distance of zeta beyond an end of the table; < 0 before its start [m]
+    double beyond;  // distance of zeta beyond an end of the table; 0 within the table, < 0 before its start [m]
 
     double rise() const noexcept { return cubic[1] + u * (2.0 * cubic[2] + 3.0 * u * cubic[3]); }
     double value() const noexcept

@@ -87,7 +87,7 @@ inline __attribute__((always_inline)) double blockSum(int first, int count, cons
   return blockSums<1>(first, count, [&](int i, auto& rows, int k) { rows[0][k] = term(i); })[0];
 }
 
-/// N sums over `count` indices from 0, for about a dozen indices or fewer. The terms are added one after the other.
+/// N sums over `count` indices from 0, meant for a dozen indices or fewer. The terms are added one after the other.
 template <int N, class Terms>
 inline __attribute__((always_inline)) std::array<double, N> fewSums(int count, const Terms& terms) noexcept
 {

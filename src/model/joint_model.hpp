@@ -23,7 +23,8 @@ struct JointInputs
   double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// The whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes a model, namely its own copy.
+/// Model of the whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes a JointModel, in a copy
+/// of its own.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);

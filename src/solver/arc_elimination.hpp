@@ -84,7 +84,7 @@ struct Kernels
 extern const Kernels BASELINE;  ///< kernels for every processor of the architecture
 #ifdef HJT_AVX2
 extern const Kernels AVX2;    ///< kernels for x86-64 with AVX2
-extern const Kernels AVX512;  ///< for AVX-512 VL and DQ: vectors as long as in AVX2, twice as many registers
+extern const Kernels AVX512;  ///< for AVX-512 VL and DQ: vectors as long as with AVX2, twice as many registers
 #endif
 
 /// Kernels of the fastest kind that this processor supports.

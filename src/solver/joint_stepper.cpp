@@ -29,7 +29,7 @@ Eigen::Vector2d rubbingSpeeds(const Eigen::Vector2d& before, const Eigen::Vector
   return mean;
 }
 
-/// Speeds after a kick. `momentum`: momentum of motor and output after a kick without friction [N.m.s].
+/// Speeds after a kick (see Leapfrog). `momentum`: momentum of motor and output after a kick without friction [N.m.s].
 KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen::Vector2d& before,
                  const Eigen::Vector2d& momentum, double dt) noexcept
 {
@@ -41,10 +41,10 @@ KickedSpeeds rub(JointDynamics& system, const DryFriction& friction, const Eigen
   return system.stopOrSlide(friction, before, momentum, dt);
 }
 
-/// Speeds after a kick in which the motor's torque decreases with the speed at the kick's end, near the speed limit.
+/// Speeds after a kick (see Leapfrog) in which the motor's torque decreases with the final speed, near the speed limit.
 /// The solution is unique and does not overshoot, however steep the decrease is. `system` receives the motor's torque.
 ///
-/// `others`: torques except those of motor and friction [N.m]; `kept`: part of the motor's old torque that the lagging
+/// `others`: torques except those of motor and friction [N.m]; `kept`: part of the motor's last torque that the lagging
 /// current keeps [N.m]; `share`: part of the wanted torque that the current reaches [-].
 KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double kept, double share,
                   const Eigen::Vector2d& before, double dt) noexcept
@@ -69,8 +69,9 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
   return speeds;
 }
 
-/// Speeds after a kick by the torques `others` (see `fade`) and by the motor. The motor either has its whole torque
-/// `full` [N.m] or reduces it by the speed at the kick's end. First the case at the kick's beginning is tried.
+/// Speeds after a kick (see Leapfrog) by the torques `others` (see `fade`) and by the motor. The motor either has its
+/// whole torque `full` [N.m] or reduces it by the speed at the kick's end. The case at the kick's beginning is tried
+/// first.
 KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
                    const Eigen::Vector2d& before, double dt) noexcept
 {

@@ -292,7 +292,7 @@ HJT_VECTOR_CLONES void ResponseSurface::friction(const Place& place, RingFrictio
 {
   using Value = SurfaceNode::Value;
   constexpr int GROUPS = RingFrictionResponse::FLANK_GROUPS;
-  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // more values than needed, to fill whole vectors
+  constexpr int COUNT = Value::LOBE_FORCE - Value::BILINEAR;  // reads more values than needed, to fill vectors
   constexpr int VISCOUS = Value::VISCOUS - Value::BILINEAR;
   constexpr int FLANKS = Value::FLANKS - Value::BILINEAR;
   Eigen::Array<float, COUNT, 1> x = place.cell.values<COUNT>();

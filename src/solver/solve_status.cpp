@@ -18,7 +18,7 @@ const char* failureOf(SolveStage stage) noexcept
   return TEXTS[static_cast<std::size_t>(stage)];
 }
 
-/// Value of solver.max_iterations in config/solver.yaml, which suffices for all shipped gears.
+/// Value of solver.max_iterations in config/solver.yaml, which is large enough for all shipped gears.
 constexpr int SHIPPED_MAX_ITERATIONS = 20;
 
 std::string adviceOf(const SolveStatus& status)

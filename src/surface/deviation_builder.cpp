@@ -32,7 +32,7 @@ struct OpenPitch
 void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& common)
 {
   const std::size_t stride = static_cast<std::size_t>(pitch.columns) + 1;
-  std::size_t kept = 0;  // index of the last line in `common` so far
+  std::size_t kept = 0;  // index of the last line so far that is in `common`
   for (std::size_t i = 0, in_common = 0; i < pitch.lines.size(); ++i)
   {
     if (in_common == common.size() || pitch.lines[i] != common[in_common])
@@ -63,7 +63,7 @@ void levelEdge(OpenPitch& pitch, std::size_t column, const std::vector<double>& 
 }
 
 /// Makes the values at the end of a pitch and at the start of the next pitch equal functions of v. On lines that only
-/// one of the pitches has, the values at this edge are interpolated between the lines that both pitches have.
+/// one of the pitches has, the values at the common edge are interpolated between the lines that both pitches have.
 void joinPitches(OpenPitch& before, OpenPitch& after)
 {
   std::vector<double> common;
