@@ -111,7 +111,7 @@ double RaceDeflection::ballPlace(int ball, double wave_generator_angle) const no
 /// Drop of a ball into one spall, see RaceDeflection.
 RaceDeflection::Drop RaceDeflection::drop(const Spall& spall, int ball, double angle) const noexcept
 {
-  // golden angle, by which the rotations of the balls differ so that they have no pattern [rad]
+  // golden angle, by which the rotations of successive balls differ, so that the rotations have no pattern [rad]
   constexpr double GOLDEN = 2.399963229728653;
   Bump at;
   switch (spall.where)

@@ -62,7 +62,7 @@ public:
   struct Scratch
   {
     explicit Scratch(int teeth) : moment(teeth) {}
-    void setZero() noexcept {}  // `addForces` writes every entry
+    void setZero() noexcept {}  // nothing to do, because `addForces` writes every entry
     void repeat() noexcept { repeatHalf(moment); }
 
     Eigen::VectorXd moment;  ///< bending moment at each tooth (absolute law: of each segment) [N.m]

@@ -328,7 +328,7 @@ HJT_VECTOR_CLONES double ToothMesh::pairOutOfReach(const DrivePosition& position
     const double ry = sin_output * own.axis_x + cos_output * own.axis_y;
     const ToothPose stand = poseOf(point, mid_height, h, i, j, rx, ry);
     const bool reaches = !(point[2 * i] * point[2 * i] + point[2 * i + 1] * point[2 * i + 1] < reach);
-    int rest = static_cast<int>(first + i * spaces_a_tooth);  // less than 3 * spaces
+    int rest = static_cast<int>(first + i * spaces_a_tooth);  // space at rest, less than 3 * spaces
     rest -= rest >= spaces ? spaces : 0;
     rest -= rest >= spaces ? spaces : 0;
     space[i] = reaches ? space[i] : rest;

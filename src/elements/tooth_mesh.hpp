@@ -152,7 +152,7 @@ private:
   {
     double axis_x;  // x of the unit vector of the axis at the output angle 0
     double axis_y;
-    double across;  // error of manufacture, see ManufactureErrors [m]
+    double across;  // error of manufacture of the space, see ManufactureErrors [m]
     double along;
   };
   ToothEngagement engage(const RingShape& shape, double cos_output, double sin_output, int i) const noexcept;
@@ -173,7 +173,7 @@ private:
   double half_space_;  // tangent of half the angle of a space [-]
   ToothProfile profile_;
   std::vector<Space> space_;
-  Eigen::VectorXd tooth_across_;  // errors of manufacture, see ManufactureErrors
+  Eigen::VectorXd tooth_across_;  // errors of manufacture of each tooth, see ManufactureErrors [m]
   Eigen::VectorXd tooth_along_;
   Eigen::VectorXd stiffness_;
   Eigen::VectorXd clearance_;

@@ -294,7 +294,7 @@ HJT_VECTOR_CLONES void WaveGeneratorContact::addForces(const RingShape& shape, c
   sum.wave_generator_torque += torque;
 }
 
-/// A tooth out of contact adds nothing, because its force and stiffness are zero.
+/// Adds the tangent of each solved tooth; that of a tooth out of contact is zero, like its force and stiffness.
 HJT_VECTOR_CLONES void WaveGeneratorContact::addTangent(const RingShape& shape, const Scratch& scratch,
                                                         RingTangent& tangent) const noexcept
 {

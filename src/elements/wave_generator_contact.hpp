@@ -83,7 +83,7 @@ public:
   struct Scratch : SingleBalls::Scratch
   {
     explicit Scratch(int teeth);
-    void setZero() noexcept {}  // `addForces` writes every entry
+    void setZero() noexcept {}  // nothing to do, because `addForces` writes every entry
     void repeat() noexcept;
 
     Eigen::VectorXd force;       ///< normal force of the wave generator on each tooth, >= 0 [N]

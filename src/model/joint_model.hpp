@@ -23,8 +23,7 @@ struct JointInputs
   double arm_torque{};   ///< torque of the arm on the output at the end of the step; > 0 resists positive motion [N.m]
 };
 
-/// Model of the whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes a JointModel, in a copy
-/// of its own.
+/// The whole joint: ring, motor, bearing, load and frictions. Only JointFaults changes it, in a copy of its own.
 struct JointModel
 {
   explicit JointModel(const Parameters& parameters);

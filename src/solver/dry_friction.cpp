@@ -91,8 +91,8 @@ bool solveSlip(double free, double most, double e, double& share)
   return false;
 }
 
-/// Terms of friction that continue to slide in a step. DryFriction::slide is compiled for each kind of processor, with
-/// the functions of this class inlined.
+/// Terms of friction that continue to slide in a step. The compiler inlines the functions of this class into each
+/// version of DryFriction::slide for a kind of processor.
 class SlidingTerms
 {
 public:

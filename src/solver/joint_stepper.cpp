@@ -69,9 +69,8 @@ KickedSpeeds fade(JointDynamics& system, const Eigen::Vector2d& others, double k
   return speeds;
 }
 
-/// Speeds after a kick (see Leapfrog) by the torques `others` (see `fade`) and by the motor. The motor either has its
-/// whole torque `full` [N.m] or reduces it by the speed at the kick's end. The case at the kick's beginning is tried
-/// first.
+/// Speeds after a kick by the torques `others` (see `fade`) and by the motor. The motor either has its whole torque
+/// `full` [N.m] or reduces it by the speed at the kick's end. First the case at the kick's beginning is tried.
 KickedSpeeds drive(JointDynamics& system, const Eigen::Vector2d& others, double full, double kept, double share,
                    const Eigen::Vector2d& before, double dt) noexcept
 {

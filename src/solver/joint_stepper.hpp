@@ -88,7 +88,7 @@ private:
 class JointStepper
 {
 public:
-  /// Largest phase of an oscillation in a substep [rad]. The phase of the leapfrog is then ahead of the exact one by
+  /// Largest phase of an oscillation in a substep [rad]. The phase of the leapfrog is then ahead of the exact phase by
   /// phase^2 / 24 = 0.04 %, so that the error after four oscillations is a hundredth of the amplitude.
   static constexpr double MAX_PHASE_ADVANCE = 0.1;
   /// MAX_PHASE_ADVANCE of a joint in an arm [rad]. The phase of the leapfrog is then ahead by 0.7 %, but only in modes

@@ -206,8 +206,8 @@ bool EnergyDescent::step(RingLinearisation& system, RingState& state) noexcept
   return false;
 }
 
-/// Solves with `damping` [N/m] added to the stiffness of every tooth. The step is kept if it lowers the energy or, for
-/// a change of the energy within its rounding, the largest force. @returns whether the step is kept.
+/// Solves with `damping` [N/m] added to the stiffness of every tooth. The step is kept if it lowers the energy or, if
+/// the change of the energy is within rounding, the largest force. @returns whether the step is kept.
 bool EnergyDescent::dampedStep(double damping, RingLinearisation& system, RingState& state) noexcept
 {
   constexpr double ROUNDING = 1e-12;  // rounding of the energy, as a share of the energy [-]

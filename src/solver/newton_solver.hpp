@@ -61,7 +61,7 @@ private:
   RingTangent tangent_;
   RingForces forces_;
   std::vector<char> factored_meshed_;
-  Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact
+  Eigen::VectorXd factored_depth_;  // depths in the wave generator's contact at the last `refactor` [m]
   // Whether the derivatives by both angles of the last factored tangent are computed, and results of this tangent.
   bool rates_known_{};
   Eigen::VectorXd step_;

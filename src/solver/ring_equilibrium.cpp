@@ -377,7 +377,7 @@ double balanceTolerance(const RingEquilibrium& ring) noexcept
 
 SolveStatus balanceOutput(RingEquilibrium& ring, double wave_generator_angle, double load_torque) noexcept
 {
-  constexpr int MAX_IDLE = 20;          // number of successive iterations without progress
+  constexpr int MAX_IDLE = 20;          // largest number of successive iterations without progress
   constexpr double CLOSER = 0.999;      // an excess below this share of the least excess so far is progress [-]
   constexpr double FIRST_REACH = 0.01;  // largest length of the first step [tooth spaces]
   constexpr double MAX_REACH = 0.25;    // largest length of a step; teeth change spaces in longer ones [tooth spaces]

@@ -22,6 +22,6 @@ struct SurfaceSource
   bool background{};
 };
 
-/// $XDG_CACHE_HOME/harmonic_joint_twin or else ~/.cache/harmonic_joint_twin; empty without these variables and HOME.
+/// Directory of the cache: $XDG_CACHE_HOME/harmonic_joint_twin, else ~/.cache/harmonic_joint_twin; else empty.
 std::string surfaceCacheDirectory();
 }  // namespace hjt
