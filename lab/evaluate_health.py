@@ -150,8 +150,8 @@ def check_up_line(sound):
     runs = [run for run in sound if run.motion == CHECK_UP]
     found = sum(map(alarmed, runs))
     gears = len({run.gear.name for run in runs})
-    return (f"- {len(runs)} check-ups of {gears} sound gears gave {found} alarm{'s' * (found != 1)}. With 95 % "
-            f"confidence the rate of false alarms is at most {100.0 * poisson_bound(found) / len(runs):.2g} %.")
+    return (f"- {len(runs)} check-ups of {gears} sound gears gave {found} alarm{'s' * (found != 1)}. With 95 % confidence "
+            f"the rate of false alarms in check-ups is at most {100.0 * poisson_bound(found) / len(runs):.2g} %.")
 
 
 def series(bench, gears):
@@ -347,7 +347,7 @@ def report(bench, trials, occurrence, sound, faulty, missing):
             "windows that a verdict needs.", "",
             *health_runs.split_table(("evaluation", trials)), "",
             *kind_table(bench.kinds, faulty), "",
-            f"The calibration error is {error:.3f}. The named cause is right in "
+            f"The calibration error of the confidence is {error:.3f}. The named cause is right in "
             f"{share(map(right, filter(alarmed, faulty)))} alarms. If faults were as frequent as the FMECA rates them, "
             f"the named cause would be right in {100.0 * by_occurrence(faulty, occurrence):.0f} % of the alarms.",
             "",

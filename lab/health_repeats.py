@@ -181,7 +181,7 @@ def share(numbers):
 def repeats_table(trials):
     rows = [("friction and payload as in the reference", [found["sound"] for found in trials]),
             (f"friction of another day: {100 * SHARE:g} % and {FLOOR} N·m", [found["friction"] for found in trials]),
-            *((f"payload {beside:g} N·m heavier than in the reference, with its weight in the parameters",
+            *((f"payload {beside:g} N·m heavier than the payload of the reference, with its weight in the parameters",
                [found["payloads"][beside] for found in trials])
               for beside in BESIDE)]
     return ["| check-ups of sound drives | judged | alarms |", "|---|---|---|",
@@ -238,10 +238,10 @@ def worn_line(trials):
     in_set = [any(kind in str(others).split(", ") for kind in WORN) for others in alarms["alternatives"]]
     others = collections.Counter(alarms["cause"][~named]).most_common()
     return (f"{len(verdicts)} drives have teeth, interface and grease worn together, each with a severity of "
-            f"{WORN_FROM} to {WORN_TO}. {len(alarms)} of these drives alarm. {named.sum()} verdicts "
+            f"{WORN_FROM} to {WORN_TO}. {len(alarms)} of these drives cause an alarm. {named.sum()} verdicts "
             f"name one of the three causes, and {(named | in_set).sum()} verdicts have one of the three causes in "
             "their set."
-            + (f" The wrong causes are {', '.join(f'`{cause}` ({count})' for cause, count in others)}." if others
+            + (f" The other verdicts name {', '.join(f'`{cause}` ({count})' for cause, count in others)}." if others
                else ""))
 
 
