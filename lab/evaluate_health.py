@@ -150,8 +150,8 @@ def check_up_line(sound):
     runs = [run for run in sound if run.motion == CHECK_UP]
     found = sum(map(alarmed, runs))
     gears = len({run.gear.name for run in runs})
-    return (f"- {len(runs)} check-ups of {gears} sound gears gave {found} alarm{'s' * (found != 1)}. With 95 % confidence "
-            f"the rate of false alarms in check-ups is at most {100.0 * poisson_bound(found) / len(runs):.2g} %.")
+    return (f"- {len(runs)} check-ups of {gears} sound gears gave {found} alarm{'s' * (found != 1)}. With 95 % "
+            f"confidence at most {100.0 * poisson_bound(found) / len(runs):.2g} % of sound check-ups give an alarm.")
 
 
 def series(bench, gears):
