@@ -17,15 +17,15 @@ HEAD = """# Beside a real robot
 
 `lab/run compare_real` writes this page.
 
-This page shows how far the twin differs from a sound robot. A difference on your robot that is smaller than on this
-page tells nothing about your robot. The page also counts the right verdicts on recordings of sound joints and on
-recordings with raised friction.
+This page shows how far the twin differs from a sound robot. If the twin differs from your robot by less than from the
+sound robots of this page, the difference is no sign of a fault. The page also counts how many verdicts are right on
+recordings of sound joints and on recordings with artificially raised friction.
 
-The recordings come from one UR5, one UR10e and one drive of another maker, all sound. The recordings are not part of
+The recordings come from one UR5, one UR10e and one drive of the maker NEURA, all sound. The recordings are not part of
 this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
-friction of another arm may vary more from recording to recording.
+friction of your arm may vary more from recording to recording than that of these arms.
 
-The program identifies the twins on one recording and compares the twins with the other recordings.
+For each robot the program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
 """
 WIDTH = 150  # of a line of the page

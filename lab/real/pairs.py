@@ -26,8 +26,8 @@ def pairs_text(arms, groups):
                        f"recordings by {100.0 * rms(np.array(together)):.1f} % rms, and by "
                        f"{100.0 * rms(np.array(left)):.1f} % rms after division by the median of the three joints.")
     return f"""
-The program also judged each recording with each other recording as reference, in {len(arms)} pairs. Of {len(judged)}
-judged joints {alarms} are WARN or worse. In some pairs the program judged all three joints of a group.
-{" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from these pairs, so the
-pairs are no test for another arm.
+The program also judged each recording with every other recording as reference, in {len(arms)} pairs of recordings. Of
+the {len(judged)} verdicts on single joints {alarms} are WARN or worse. In some pairs the program judged all three
+joints of a group. {" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from these
+pairs. So the pairs do not show how often the verdict is wrong on another arm.
 """

@@ -89,11 +89,11 @@ class Torsion:
     def page(self):
         return [f"""
 **Torsion.** The figure shows the torsion (motor angle / 101 − output angle), minus the torsion without load at the same
-angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f} N·m, the twin's friction at this speed.
-The blue curve is the torsion of the catalogue's gear. Only the origin of this curve comes from the recording, because
-the zeros of the encoders are arbitrary. The red curve has the catalogue's compliance times {self.scale:.3f} ±
-{self.width:.3f} (95 %). The program identified this factor on every second stripe of {STRIPE:g}° of the sweep and
-tested it on the stripes between.
+angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f} N·m, the twin's friction at the speed
+of the sweep. The blue curve is the torsion of the catalogue's gear. Only the origin of this curve comes from the
+recording, because the zeros of the encoders are arbitrary. The red curve has the catalogue's compliance times
+{self.scale:.3f} ± {self.width:.3f} (95 %). The program identified this factor on every second stripe of {STRIPE:g}° of
+the joint's angle and tested the factor on the stripes between.
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
@@ -102,11 +102,12 @@ tested it on the stripes between.
                 f"""
 [{STIFFNESS_ROWS}]({STIFFNESS_ROWS}) has the stiffness by load.
 
-*Weakness:* a fit to the negative angles alone gives a factor of {self.halves[0]:.2f}, a fit to the positive angles a
-factor of {self.halves[1]:.2f}. These two factors differ by more than the interval, which is therefore too narrow. With
-a factor identified on one half of the angles the error on the other half is larger than with the catalogue's curve. The
-remaining error is slow waves of the transmission error, which depend on load and mounting. One sweep cannot separate
-these waves from torsion. The catalogue's curve lies between the two fits.
+*Weakness:* a fit to the negative joint angles alone gives a compliance of {self.halves[0]:.2f} times the catalogue's, a
+fit to the positive angles one of {self.halves[1]:.2f} times the catalogue's. These two factors differ by more than the
+stated interval of the factor, so the interval is too narrow. With a factor identified on one half of the angles the
+error of the torsion on the other half is larger than with the catalogue's curve. The error that remains is slow waves
+of the transmission error, which depend on load and mounting. One sweep cannot separate these waves from torsion. The
+catalogue's compliance lies between those of the two fits.
 """]
 
 
@@ -161,24 +162,26 @@ class TransmissionError:
 
     def page(self):
         return [f"""
-**Transmission error without load.** The figure compares two spectra: the published error in each direction of rotation,
-and the twin's kinematic error, computed at 5 N·m. Two numbers of the twin are fitted. The line at 200 per turn of the
-joint gives a total cumulative pitch deviation of the circular spline of {1e6 * self.pitch['circular_spline']:.1f} µm.
-The line at 202 per turn of the joint gives a deviation of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm.
-The scatter of the points nearly hides the line at 202. ISO 1328 allows 17 µm in grade 5 and 12 µm in grade 4 at this
-size. The lines at 400 and 404 result from the same pitch deviations. The line of the circular spline (200) is larger
-than that of the flexspline (202), as in the current of the UR5.
+**Transmission error without load.** The figure compares the lines of the published error in each direction of rotation
+with the lines of the twin's kinematic error, computed at 5 N·m. Two pitch deviations of the twin are fitted to the
+published lines. The line at 200 per turn of the joint gives a total cumulative pitch deviation of the circular spline
+of {1e6 * self.pitch['circular_spline']:.1f} µm. The line at 202 per turn of the joint gives a total cumulative pitch
+deviation of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm. The scatter of the published points nearly hides
+the line at 202. ISO 1328 allows a pitch deviation of 17 µm in grade 5 and 12 µm in grade 4 at this size. The twin's
+lines at 400 and 404 result from these two pitch deviations. The line of the circular spline (200) is larger than that
+of the flexspline (202), as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 
 [{LINE_ROWS}]({LINE_ROWS}) has the amplitudes of the lines. The twin has no line at 101 per turn of the joint (once per
-turn of the motor), because only pitch deviations were fitted. The two lobes share the load, and the lead of one lobe
-cancels the lag of the other. Other errors can make the line at 101. A wave generator off its axis together with run-out
-of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
-(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). An eccentric motor encoder of 1.1
-mrad makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors of wave
-generator and encoder. The recorded error has 0.6 mrad once and 0.35 mrad twice per turn of the output. A gear of this
-kind may have an error of 1 minute of arc in all. The amplitudes are larger, so the output encoder is eccentric.
+turn of the motor), because pitch deviations make no such line. The two lobes share the load, and the lead of one lobe
+cancels the lag of the other lobe. Errors of other parts can make the line at 101. A wave generator off its axis
+together with run-out of the flexspline, 10 µm each, makes 10 µrad without load and 7 µrad at 67 N·m
+(`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). A motor encoder with an error of 1.1
+mrad by eccentricity makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors
+of wave generator and encoder. The recorded error has an amplitude of 0.6 mrad once and 0.35 mrad twice per turn of the
+output. The whole error of a gear of this kind may be 1 minute of arc (0.29 mrad). The recorded amplitudes are larger,
+so the output encoder is eccentric.
 
 *Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep turns in one
 direction only and takes 7 s. The torque is computed from the current. The error without load comes from a published
@@ -189,8 +192,8 @@ figure, whose points scatter by 0.03 mrad.
 def section(runner, telemetry, docs, images):
     """Lines of the page."""
     heading = ["## A 101:1 drive with both encoders", """
-The drive is the elbow of a NEURA LARA 8, not of a UR. Its recording (A. Lucious, 2024) is the only public recording of
-a drive with this ratio and encoders at motor and output.
+The drive is the elbow of a NEURA LARA 8, not of a UR. The recording of this drive (A. Lucious, 2024) is the only public
+recording of a drive with this ratio and encoders at motor and output.
 """]
     paths = [os.path.join(telemetry, name) for name in (LOADED, UNLOADED)]
     missing = [path for path in paths if not os.path.isfile(path)]

@@ -33,22 +33,24 @@ COLUMNS = ["time", "velocity_measured", "current_measured", "current_predicted",
 CURRENT = f"""
 ### Error of the predicted current
 
-The program divides the error of the twin by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has the quotients
-for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints, moving and resting
-[A, rms]. The column *means* is for means over {MEAN:g} s around each moving row, the column *moving rows* for all
-moving rows (faster than {MOVING:g} rad/s). The column `load` says where the load comes from. With *arm* the program
-computes the load from the arm's links, and the twin gets only `/joint_states`. With the load
-*target_moment* the program uses the recorded moment to identify the twin, and the twin uses it to predict. The *fit*
-has gain, Coulomb friction and viscous friction, fitted by least squares to all rows of {TRAIN} with the recorded moment
-as load. The targets are {WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving rows.
+The program divides the twin's error of the current by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has these
+quotients for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints in moving
+and in resting rows [A, rms]. The column *means* is for means of the current over {MEAN:g} s around each moving row (row
+faster than {MOVING:g} rad/s), the column *moving rows* for all single moving rows. The column `load` says from what the
+load of a joint was computed. With *arm* the program computes the load from the arm's links, and the twin gets only
+`/joint_states`. With *target_moment* the load is the recorded moment, in the identification and in the prediction. The
+simple *fit* has gain, Coulomb friction and viscous friction, fitted by least squares to all rows of {TRAIN} with the
+recorded moment as load. The wanted quotient is at most {WANTED_MEANS:g} for means and {WANTED_MOVING:g} for moving
+rows.
 
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
-The remaining error in moving rows is ripple with 200 periods per turn of each joint, the rate at which the two lobes
-pass a tooth of the circular spline. The arm carries this ripple into the current of every joint.
+The error that remains in moving rows is ripple with 200 periods per turn of a joint, because the two lobes pass a tooth
+of the circular spline 200 times per turn. The arm transmits this ripple from each joint to the currents of all joints.
 
 At rest stiction holds the joint, and any current within a band gives the same angle. Two encoder counts (9.4 µrad) are
-a quarter of the presliding angle and correspond to some 0.3 A. So the twin predicts a band at rest, not a value.
+a quarter of the presliding angle and correspond to a change of the current by some 0.3 A. So at rest the twin predicts
+a band of the current, not a value.
 
 ![Current of the three large joints, measured and predicted](images/real_robot/current.png)
 """
@@ -335,10 +337,10 @@ def section(runner, telemetry, docs, images):
     moving, moving_of, worst_moving = met(judged_errors, "moving", WANTED_MOVING)
     summary = [f"The page compares the twin's error of the current with the error of a simple fit. A case is one large "
                f"joint in one recording that the twins were not identified on. For means over 0.1 s the twin's error "
-               f"is at most {WANTED_MEANS:g} of the fit's error in {means} of {means_of} cases. In the worst case the "
-               f"twin's error is {worst_means:.2f} times the fit's error. For single moving rows the twin's error is "
-               f"at most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases. In the worst case the "
-               f"twin's error is {worst_moving:.2f} times the fit's error.",
+               f"is at most {WANTED_MEANS:g} of the fit's error in {means} of {means_of} cases, and "
+               f"{worst_means:.2f} times the fit's error in the worst case. For single moving rows the twin's error is "
+               f"at most {WANTED_MOVING:g} of the fit's error in {moving} of {moving_of} cases, and "
+               f"{worst_moving:.2f} times the fit's error in the worst case.",
                judged_right]
     write_errors(os.path.join(docs, "real_robot_current.csv"), {**judged_errors, TRAIN: all_errors[TRAIN]})
     write_rows(os.path.join(docs, RATIO_ROWS), ["recording", "joint", "load", "means", "moving rows"],
@@ -384,21 +386,22 @@ def verdict_section(runner, by_name, judged, docs):
     lines = ["""
 ### Verdicts
 
-""" + f"""`joint_twin compare --arm ur5` judges each recording alone and with the report of {TRAIN} as
-`--reference` ({TRAIN} itself with that of {other}). The arm is sound in all recordings.
+""" + f"""`joint_twin compare --arm ur5` judges each recording twice, alone and with the report of
+{TRAIN} as `--reference` ({TRAIN} itself with the report of {other}). The arm is sound in all recordings.
 [{VERDICT_ROWS}]({VERDICT_ROWS}) has the verdicts, and for each joint the friction divided by the friction in the
-reference, at the speeds that both recordings have, without the factor that all joints share. A cell is empty if the
-motion does not show the friction of the joint.
+reference, at the speeds that recording and reference have in common, without the factor that all joints share. In this
+file a cell is empty if the motion does not show the friction of the joint.
 """, *of_pairs, f"""
-For the recordings with raised friction the program adds {100.0 * RAISED:.0f} % of the identified friction of one joint,
-or of all joints, to the recorded current. If the friction of one joint is raised, a verdict is right if it names this
-joint and no other. If the friction of all joints is raised, a verdict is right if it names no single joint. No verdict
-can name a joint whose friction the motion does not show. [{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
+The recordings with raised friction are made from recordings of the sound arm. The program adds {100.0 * RAISED:.0f} %
+of the identified friction of one joint, or of all joints, to the recorded current of these joints. If the friction of
+one joint is raised, a verdict is right if it names this joint and no other. If the friction of all joints is raised, a
+verdict is right if it names no single joint. No verdict can name a joint whose friction the motion does not show.
+[{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
 """, """
 ### Limits of these recordings
 
 The arm has no encoder behind the gear, so the torsion is not recorded. The recordings do not contain temperature and
-payload. In no5 and no7 rows are missing, for up to 0.4 s.
+payload. In no5 and no7 some rows are missing, over gaps of up to 0.4 s.
 """]
     return lines, raised_lines, sentence
 
@@ -406,20 +409,20 @@ payload. In no5 and no7 rows are missing, for up to 0.4 s.
 def introduction(summary, recordings, loads):
     return [f"""
 The arm is a UR5 of the CB series with six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014).
-The twins get what a driver's `/joint_states` holds: angles and currents of the six joints. The twins compute the load
-of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies all six twins on {TRAIN} alone
-(`joint_twin identify --arm`) and compares the twins with the other recordings.
+The twins receive what the `/joint_states` of a UR driver contain, the angles and currents of the six joints. The twins
+compute the load of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies all six twins on
+the recording {TRAIN} alone (`joint_twin identify --arm`) and compares the twins with the other recordings.
 
 {summary[0]}
 {summary[1]}
 
-The recordings are {rows_of(recordings)}. A mean over {MEAN:g} s has half as many rows in no2 (62.5 Hz) as in the other
-recordings. In no5_pushed a person pushes the arm. No twin predicts this contact. no7 repeats the motion of no6 on
+The recordings are {rows_of(recordings)}. A mean over {MEAN:g} s contains half as many rows in no2 (62.5 Hz) as in the
+other recordings. In no5_pushed a person pushes the arm. No twin predicts these pushes. no7 repeats the motion of no6 on
 another day.
 
 ### Load
 
-The program compares the load that follows from the arm's links with the controller's `target_moment`. In recordings in
-which the moment has a range of more than {LEAST_SPAN:g} N·m, the rms difference as a share of the range is at most
-{loads}. [{LOAD_ROWS}]({LOAD_ROWS}) has the difference and the range for each recording.
+The program compares the load that follows from the arm's links with the controller's `target_moment`. Where this moment
+has a range of more than {LEAST_SPAN:g} N·m in a recording, the rms difference divided by the range is at most {loads}.
+[{LOAD_ROWS}]({LOAD_ROWS}) has this difference and this range for each recording and joint.
 """]
