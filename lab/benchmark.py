@@ -38,37 +38,39 @@ STYLES = {
 }
 HEAD = """# Run time against error
 
-`lab/run benchmark` writes this page. The page compares how long the solvers of the twin and other programs take to
-reach a given error. All solvers get the same equations of motion. The problems are the dynamic ring of
-[model.md](model.md) (804 states: the mass of every tooth, wave generator, circular spline), the operating model (motor
-and output as masses, the ring in equilibrium), and the levels of detail that a user can choose from.
+`lab/run benchmark` writes this page. The page compares how much time the solvers of the twin and of other programs
+(peers) need to reach a given error. All solvers integrate the same equations of motion. The problems are the dynamic
+ring of [model.md](model.md) (804 states: the mass of every tooth, wave generator, circular spline), the operating model
+(motor and output as masses, the ring in equilibrium), and the levels of detail that a user can choose from.
 
 ```sh
 lab/run benchmark                    # ten minutes: installs peers, measures, writes every run to out/benchmark/runs.csv
 lab/run benchmark --reuse            # writes the page again from the last measurements
 ```
 
-The **error** of a run is the root mean square of its differences from the reference over all samples, divided by the
-standard deviation of the reference. Angles, tooth positions and tooth forces have an error each. The **time** is
-processor time of one thread, the median of the runs. The solvers run in turn. The **peers** are SUNDIALS (CVODE, IDA,
-ARKODE), RADAU5 and Boost.odeint. The peers get the analytic sparse Jacobian with SuiteSparse's KLU and call the twin's
-functions for the forces. The tolerances of the peers are absolute, in units of 5 µm, 0.1 m/s, 1 mrad and 10 rad/s. The
-operating model of the peers has no friction of the cup, because a solver of smooth equations cannot compute this
-friction. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive steps (`joint_twin dynamics --tolerance`).
+The **error** of a run is the root mean square of its differences from a reference run over all samples, divided by the
+standard deviation of the reference. Angles, tooth positions and tooth forces have separate errors. The **time** is the
+processor time of one thread, the median of repeated runs, in which the solvers take turns. The **peers** are SUNDIALS
+(CVODE, IDA, ARKODE), RADAU5 and Boost.odeint. The peers use the analytic sparse Jacobian with SuiteSparse's KLU, and
+call the twin's functions for the forces. The peers have absolute tolerances, in units of 5 µm (positions), 0.1 m/s
+(speeds), 1 mrad (angles) and 10 rad/s (angular speeds). The operating model of the peers has no friction of the cup,
+because a solver of smooth equations cannot compute this friction. **Our solvers** are TR-BDF2 and ESDIRK4 with adaptive
+steps (`joint_twin dynamics --tolerance`).
 """
-READING = """A number above 1 means that our solver is faster. *ours only* means that no peer reaches the error, *peer
-only* that no solver of ours reaches it. A dash says that no solver reaches the error, or that the two references differ
-by more than the error. For tooth forces an error below 1e-3 needs steps of a fraction of a microsecond, which resolve
-the vibration of single teeth. The best peer for these errors is Runge-Kutta 4 with steps of equal length.
+READING = """A number above 1 means that our fastest solver is faster than the fastest peer. *ours only* means that no
+peer reaches the error, *peer only* that none of our solvers reaches the error. A dash means that no solver reaches the
+error, or that two independent reference runs differ by more than the error. For tooth forces an error below 1e-3 needs
+steps of a fraction of a microsecond, which resolve the vibration of single teeth. The best peer for these errors is
+Runge-Kutta 4 with steps of equal length.
 
 ![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
 """
 
 
-CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed of each level of detail by its error. Choose the
+CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed and the error of each level of detail. Choose the
 full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table for the live
-node and for runs offline. Choose the table at measured angles if you follow a recording. The runs on the table solve
-the tooth forces only for the hundred samples, which takes about 3 ms."""
+node and for runs offline. Choose the table at measured angles if you follow a recording. In this comparison the runs on
+the table solve the tooth forces only for the hundred samples of a run, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
@@ -202,10 +204,10 @@ def processor():
 def levels_of(reference):
     """Lines on the levels of detail."""
     return ["## " + reference["title"], "",
-            f"The reference is {reference['methods'][0]}. A second reference, {reference['methods'][1]}, differs from "
-            f"the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
-            f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than these differences "
-            "mean nothing, so `benchmark_levels.csv` omits them.", "",
+            f"The reference run is {reference['methods'][0]} (h: step). A second run, {reference['methods'][1]}, differs "
+            f"from the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
+            f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than the differences "
+            "between these two runs mean nothing, so `benchmark_levels.csv` omits errors of this size.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
 
 
@@ -233,8 +235,8 @@ def parts(tool):
     slope = math.log(teeth[most] / teeth[least]) / math.log(most / least)
     return ["## Insertion from cold, and cost against teeth", "",
             f"The solver finds the equilibrium of the wave generator in the round ring in {cold:.2g} ms (target: at "
-            f"most 1 ms). A Newton iteration of the dynamic ring computes forces, tangent, factors and solution. The "
-            f"time of an iteration grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", ""]
+            f"most 1 ms). A Newton iteration of the dynamic ring computes forces and tangent, and solves the linear "
+            f"equations. The time of an iteration grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", ""]
 
 
 def write_page(options, measured):

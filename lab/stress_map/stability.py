@@ -14,10 +14,10 @@ from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder i
 
 HEAD = """# Stability
 
-`lab/run stress` writes this page. The page shows how the twin behaves far from its usual range. A cell is a combination
-of parameters and inputs. The program changes one factor (parameter or input) at a time, then two factors at a time,
-then all factors at random. For each cell the program runs the twin of the Python module, and compares this run with a
-converged run of the same cell.
+`lab/run stress` writes this page. The page shows where the twin is accurate for unusual parameters and inputs. A cell
+is a combination of parameters and inputs. The program changes one factor (parameter or input) at a time, then two
+factors at a time, then all factors at random. For each cell the program runs the twin of the Python module, and
+compares this run with a [converged run](#what-is-compared) of the same cell.
 
 ```sh
 lab/run stress                # every cell: all results in out/stability/cells.csv
@@ -36,12 +36,12 @@ The exit code is 1 if a run gives a NaN, crashes, takes more than {timeout:.0f} 
 
 MEANING = """## What is compared
 
-The **error** is the largest difference from the converged run within {duration:g} s. The program compares joint torque,
-output angle and motor angle, and divides each difference by a scale. The scale of the torque is the largest torque, and
-at least {torque:g} N·m, where the first slope of the cup ends. The scale of an angle is the travel, and at least
-{angle:.2f} mrad, the torsion at {torque:g} N·m. The **converged run** computes the same cell with a shorter step. A
-period of the joint's fastest natural mode has at least 600 of these steps, and the step is at most a tenth of the step
-of the cell. The **drift** is the largest energy residual, divided by the work of motor and load.
+Every run simulates {duration:g} s. The **converged run** computes the same cell with a shorter step, at most a tenth of
+the step of the cell and at most 1/600 of a period of the joint's fastest natural mode. The **error** of a cell is the
+largest difference between its run and the converged run in joint torque, output angle and motor angle, each divided by
+a scale. The scale of the torque is its largest value in the run, and at least {torque:g} N·m, where the first slope of
+the cup ends. The scale of an angle is its travel in the run, and at least {angle:.2f} mrad, the torsion at {torque:g}
+N·m. The **drift** is the largest residual of the energy balance, divided by the work of motor and load.
 
 ## What the solver reports
 
@@ -106,12 +106,12 @@ def boundary(judged):
     if not quiet:
         return "No cell is accurate."
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
-            f"load steps. Under reversals, in which the motor gives 12 N·m (four times its limit), the longest "
+            f"load steps. Under reversals of the motor torque (12 N·m, four times the limit) the longest "
             f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} "
             f"cells. In these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest "
             f"energy drift {percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
-            f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so the solver warns rather early than "
-            f"late.")
+            f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so a warning of the solver often comes "
+            f"before the result is wrong.")
 
 
 def group_rows(groups):
@@ -135,8 +135,8 @@ def write(docs, judged, table):
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
         lines += ["", "These cells are wrong without a report, or have no result (group of the cell, values of its "
-                  f"factors, error): {'; '.join(wrong)}. The steps of these cells are as long as the twin allows. The "
-                  "phase error of the leapfrog method adds up over a run."]
+                  f"factors, error): {'; '.join(wrong)}. In these cells the steps are as long as the twin allows, and "
+                  "the phase error of the leapfrog method grows with the time of the run."]
     lines += ["", "## Where it is accurate", "", boundary(judged), ""]
     for name, (file, across, up) in MAPS.items():
         draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)

@@ -49,7 +49,7 @@ catalogue's band.
         page.check(f"family.efficiency.{size}", f"size {size}: efficiency at {torque:g} N·m, 2000 rpm, 20 °C",
                    "catalogue (TPI 275)", Within(wanted, absolute=0.03), row["gear_efficiency"], "",
                    "the catalogue's own tolerance",
-                   known="size 14 has another grease, whose viscosity is fitted to the no-load torque"
+                   known="the viscosity of size 14's own grease is fitted to the no-load torque, not to the efficiency"
                    if size == 14 else "",
                    evidence=measured("no-load and starting torque of the same catalogue set the bearing's friction"))
         starts = page.tool("breakaway", *AT_20_DEGREES, *overlay)

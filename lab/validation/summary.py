@@ -13,11 +13,11 @@ FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_st
 
 HEAD = """# Validation
 
-`lab/run validate` writes this page. The page compares the twin with three kinds of sources. The first is the thesis
-that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini diagnostici e
-prognostici*, Politecnico di Torino, 2021). The second are the catalogues of two makers (Harmonic Drive HFUS-25 for
-stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and efficiency). The third are recordings of real drives. A
-row is one comparison, with a source, an expected value, the twin's value, and a tolerance with its reason.
+`lab/run validate` writes this page. The page compares the twin with figures from three kinds of sources. The first is
+the thesis that the twin grew from (C. Costantino, *Sviluppo di un modello multibody di un harmonic drive a fini
+diagnostici e prognostici*, Politecnico di Torino, 2021). The second are the catalogues of two makers (Harmonic Drive
+HFUS-25 for stiffness and ratings, Schaeffler RT1-H-CS-25 for friction and efficiency). The third are recordings of real
+drives. A row is one comparison, with a source, an expected value, the twin's value, and a tolerance with its reason.
 
 ```sh
 lab/run validate                                     # every row, in a few minutes: the complete table in out/validation
@@ -25,9 +25,10 @@ lab/run validate --set contact.stiffness=1.1e+8      # the effect of another par
 ```
 
 The complete table is in `out/validation/validation.md`, with the commands of all runs and the errors found in the
-thesis. [validation.csv](validation.csv) has the values of all rows. The exit code is 0 if all rows hold except those in
-[What does not hold](#what-does-not-hold). If other rows fail, the program names them. The recordings of real drives are
-not part of the project. Without these recordings the program cannot recompute the sections *Real drives* and *Heat*.
+thesis. [validation.csv](validation.csv) has the values of all rows. The exit code of `lab/run validate` is 0 if all
+rows hold except those in [What does not hold](#what-does-not-hold). If another row fails, the program names this row.
+The recordings of real drives are not part of the project. Without these recordings the program cannot recompute the
+sections *Real drives* and *Heat*.
 """
 
 
@@ -59,11 +60,12 @@ def write(docs, complete, pages, titles):
             (titles[page.section], page.rows) for page in pages if page.rows)])
     lines += ["[validation_sections.csv](validation_sections.csv) has these counts for each section.",
               "", "## What a row is worth", "",
-              "A row within its tolerance supports the model more or less strongly, depending on its source. "
+              "How strongly a row within its tolerance supports the model depends on the source of the row. "
               "[validation.csv](validation.csv) states the class of evidence of each row, and which parameter was "
-              "fitted to which figure. Only the first class compares the twin with figures that nothing in the twin "
-              "was made from. The table does not count quantities that only a broken gear would miss, but the CSV file "
-              "shows their values. The rows of the thesis' chapters 6 and 7 are of the gear of the thesis "
+              "fitted to which figure. Only the class *independent measurement* compares the twin with figures that no "
+              "part of the twin was fitted to. The table does not count quantities that only a broken gear would miss, "
+              "but the CSV file shows the values of these quantities. The rows of the thesis' chapters 6 and 7 are for "
+              "the gear of the thesis "
               "(`config/golden.yaml`), not of the shipped gear. The thesis claims that the number of loaded teeth "
               "grows with the load. On the shipped gear this claim does not hold everywhere "
               "([gear_study.md](gear_study.md)).", ""]
