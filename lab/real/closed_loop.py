@@ -165,7 +165,7 @@ The current has a ripple with {LOOP_LINES} periods per turn of the joint. The si
 within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the
 median the simulated amplitude is {float(np.median(known)):.2f} times the recorded amplitude. The error of the simulated
 current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
-[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits the prediction of the ripple.
+[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits this prediction.
 """]
 
 

@@ -17,13 +17,13 @@ HEAD = """# Beside a real robot
 
 `lab/run compare_real` writes this page.
 
-This page shows how far the twin differs from a sound robot. If the twin differs from your robot by less than from the
-sound robots of this page, the difference is no sign of a fault. The page also counts how many verdicts are right on
-recordings of sound joints and on recordings with artificially raised friction.
+This page shows how far the twin differs from a sound robot. If the twin differs less from your robot than from these
+sound robots, the difference is no sign of a fault. The page also counts the right verdicts on recordings of sound
+joints and on recordings with artificially raised friction.
 
 The recordings come from one UR5, one UR10e and one drive of the maker NEURA, all sound. The recordings are not part of
 this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
-friction of your arm may vary more from recording to recording than that of these arms.
+friction of your arm may vary more between recordings than that of these arms.
 
 For each robot the program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.

@@ -93,7 +93,7 @@ angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f}
 of the sweep. The blue curve is the torsion of the catalogue's gear. Only the origin of this curve comes from the
 recording, because the zeros of the encoders are arbitrary. The red curve has the catalogue's compliance times
 {self.scale:.3f} ± {self.width:.3f} (95 %). The program identified this factor on every second stripe of {STRIPE:g}° of
-the joint's angle and tested the factor on the stripes between.
+the joint's angle and tested it on the others.
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
@@ -102,12 +102,12 @@ the joint's angle and tested the factor on the stripes between.
                 f"""
 [{STIFFNESS_ROWS}]({STIFFNESS_ROWS}) has the stiffness by load.
 
-*Weakness:* a fit to the negative joint angles alone gives a compliance of {self.halves[0]:.2f} times the catalogue's, a
-fit to the positive angles one of {self.halves[1]:.2f} times the catalogue's. These two factors differ by more than the
-stated interval of the factor, so the interval is too narrow. With a factor identified on one half of the angles the
-error of the torsion on the other half is larger than with the catalogue's curve. The error that remains is slow waves
-of the transmission error, which depend on load and mounting. One sweep cannot separate these waves from torsion. The
-catalogue's compliance lies between those of the two fits.
+*Weakness:* a fit to the negative joint angles alone gives {self.halves[0]:.2f} times the catalogue's compliance, a fit
+to the positive angles {self.halves[1]:.2f} times. These two factors differ by more than the stated interval, so the
+interval is too narrow. With a factor identified on one half of the angles the error of the torsion on the other half is
+larger than with the catalogue's curve. The error that remains is slow waves of the transmission error, which depend on
+load and mounting. One sweep cannot separate these waves from torsion. The catalogue's compliance lies between those of
+the two fits.
 """]
 
 

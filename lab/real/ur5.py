@@ -409,9 +409,9 @@ payload. In no5 and no7 some rows are missing, over gaps of up to 0.4 s.
 def introduction(summary, recordings, loads):
     return [f"""
 The arm is a UR5 of the CB series with six joints (K. Kufieta, *Force Estimation in Robotic Manipulators*, NTNU 2014).
-The twins receive what the `/joint_states` of a UR driver contain, the angles and currents of the six joints. The twins
-compute the load of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies all six twins on
-the recording {TRAIN} alone (`joint_twin identify --arm`) and compares the twins with the other recordings.
+The twins receive the angles and currents of the six joints, as in the `/joint_states` of a UR driver. The twins compute
+the load of each joint from the angles of all joints ([arm.md](arm.md)). The program identifies the six twins on the
+recording {TRAIN} alone (`joint_twin identify --arm`).
 
 {summary[0]}
 {summary[1]}
