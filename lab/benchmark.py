@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 from benchmark_runs import Progress, measure
-from lab import plt
+from lab import plt, wrapped
 
 PROBLEMS = ["insertion", "drive", "operating", "levels"]
 LEVELS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
@@ -208,7 +208,7 @@ def levels_of(reference):
             f"from the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
             f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than the differences "
             "between these two runs mean nothing, so `benchmark_levels.csv` omits errors of this size.", "",
-            f"![{reference['title']}](images/benchmark/levels.png)", "", CHOICE, ""]
+            f"![{reference['title']}](images/benchmark/levels.png)", "", wrapped(CHOICE)]
 
 
 def table_row(cells):
@@ -255,7 +255,7 @@ def write_page(options, measured):
                f"{', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
                f"{options.runs} times, slow settings less often. The program ended a run after {options.limit:g} s of "
                "processor time, a run of an explicit solver or of RADAU5 after twice this time.")
-    lines = [HEAD, "## Best peer against ours", "", *ratio_table(ratios), READING, *levels_of(measured["levels"][0]),
+    lines = [wrapped(HEAD), "## Best peer against ours", "", *ratio_table(ratios), wrapped(READING), *levels_of(measured["levels"][0]),
              *parts(options.parts), "---", "", machine]
     if absent:
         lines.append(f"Not installed: {', '.join(absent)}.")

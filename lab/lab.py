@@ -5,8 +5,10 @@ import csv
 import pathlib
 import re
 import sys
+import textwrap
 
 CHECKOUT = pathlib.Path(__file__).resolve().parent.parent
+WIDTH = 150  # of a line of a page
 STOPPED = 5  # exit code of `joint_twin arm` after a protective stop
 
 sys.path.append(str(CHECKOUT / "scripts"))
@@ -34,6 +36,13 @@ APART = {
     "series": [("health_series.csv", r"^\| all ")],
     "signatures": [("signatures_runs.csv", None), ("signatures.csv", None)],
 }
+
+
+def wrapped(text):
+    """Paragraphs in lines of WIDTH; headings, tables, figures, lists and code as they are."""
+    return "\n\n".join(part if part.lstrip().startswith(("#", "|", "!", "- ", "```")) else
+                       textwrap.fill(" ".join(part.split()), WIDTH, break_long_words=False, break_on_hyphens=False)
+                       for part in text.strip("\n").split("\n\n")) + "\n"
 
 
 def apart(folder, name, lines):

@@ -10,7 +10,7 @@ import cells
 import judge
 
 sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from lab import BLUE, GREY, ORANGE, RED, STYLE, plt  # noqa: E402  (its folder is known now)
+from lab import BLUE, GREY, ORANGE, RED, STYLE, plt, wrapped  # noqa: E402  (its folder is known now)
 
 HEAD = """# Stability
 
@@ -130,7 +130,7 @@ def write(docs, judged, table):
     """docs/stability.md, its maps and .csv. `table`: makes lines of a table."""
     groups = by_group(judged)
     count = collections.Counter(j.verdict for j in judged)
-    lines = [HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT)]
+    lines = [wrapped(HEAD.format(accuracy=100.0 * judge.ACCURACY, timeout=judge.TIMEOUT))]
     lines += table(["verdict", "cells"], [[verdict, count[verdict]] for verdict in judge.VERDICTS])
     wrong = [f"{j.cell.name} (error {percent(j.error)})" for j in judged if j.verdict not in judge.GOOD]
     if wrong:
@@ -142,7 +142,8 @@ def write(docs, judged, table):
         draw_map(os.path.join(docs, "images", "stability", file + ".png"), groups[name], across, up)
         lines += [f"![{name[5:].capitalize()}: the error in each square (blue: accurate; orange: degraded, "
                   f"reported; grey: refused)](images/stability/{file}.png)", ""]
-    lines += [MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE, angle=1e3 * judge.LEAST_ANGLE)]
+    lines += [wrapped(MEANING.format(duration=cells.DURATION, torque=judge.LEAST_TORQUE,
+                                     angle=1e3 * judge.LEAST_ANGLE))]
     lines += ["[stability.csv](stability.csv) counts the cells of each group, and has the largest error of the "
               "accurate cells of the group."]
     with open(os.path.join(docs, "stability.md"), "w", encoding="utf-8") as file:

@@ -8,6 +8,7 @@ import shutil
 from bounds import number
 from evidence import CLASSES
 from page import markdown_table, with_unit
+from lab import wrapped  # its folder is known from page
 
 FIGURES = ["catalogue_torsion", "catalogue_efficiency", "drives_ur5e", "quasi_static_error"]
 
@@ -54,7 +55,7 @@ def write(docs, complete, pages, titles):
     classes = [(f"{title}: {meaning}", [row for row in rows if row.evidence.title == title])
                for title, meaning in CLASSES.items()]
     holding = sum(row.holds for row in rows)
-    lines = [HEAD, f"**{len(rows)} rows: {holding} hold, {len(rows) - holding} do not.**", ""]
+    lines = [wrapped(HEAD), f"**{len(rows)} rows: {holding} hold, {len(rows) - holding} do not.**", ""]
     with open(os.path.join(docs, "validation_sections.csv"), "w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([["section", "rows", "hold"], *counts(
             (titles[page.section], page.rows) for page in pages if page.rows)])
