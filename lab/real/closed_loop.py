@@ -156,10 +156,10 @@ def built_section(runner, recordings, fit, joints, train, docs):
                       for joint in gains["joints"] if not joint["refusal"])
     within = np.count_nonzero((known <= 2.0) & (known >= 0.5))
     return [f"""
-**With errors of manufacture and identified gains.** In a second simulation of the closed loop the drives have the
-circular splines of `config/as_built.yaml` (7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so
-that each drive has a table. `identify --controller` found the controller's gains of speed [N·m·s/rad] and position
-[1/s] from {GAINS_FROM}: {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
+**With errors of manufacture and identified gains.** In a second simulation the drives have the circular splines of
+`config/as_built.yaml` (7″ at {LOOP_LINES} periods per turn of the joint) and equal flexsplines, so that each drive has
+a table. `identify --controller` found the controller's gains of speed [N·m·s/rad] and position [1/s] from {GAINS_FROM}:
+{found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
 The current has a ripple with {LOOP_LINES} periods per turn of the joint. The simulated amplitude of this ripple is
 within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the

@@ -22,8 +22,8 @@ sound robots, the difference is no sign of a fault. The page also counts the rig
 joints and on recordings with artificially raised friction.
 
 The recordings come from one UR5, one UR10e and one drive of the maker NEURA, all sound. The recordings are not part of
-this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. The
-friction of your arm may vary more between recordings than that of these arms.
+this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. Your
+arm's friction may vary more than that of these arms.
 
 For each robot the program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
