@@ -59,9 +59,9 @@ steps (`joint_twin dynamics --tolerance`).
 """
 READING = """A number above 1 means that our fastest solver is faster than the fastest peer. *ours only* means that no
 peer reaches the error, *peer only* that none of our solvers reaches the error. A dash means that no solver reaches the
-error, or that two independent reference runs differ by more than the error. For tooth forces an error below 1e-3 needs
-steps of a fraction of a microsecond, which resolve the vibration of single teeth. The best peer for these errors is
-Runge-Kutta 4 with steps of equal length.
+error, or that the two reference runs differ by more than the error. For tooth forces an error below 1e-3 needs
+steps of a fraction of a microsecond, which resolve the vibration of single teeth. The best peer for errors below 1e-3
+of tooth forces is Runge-Kutta 4 with steps of equal length.
 
 ![Working drive under a load step: time against error of all solvers](images/benchmark/drive.png)
 """
@@ -204,9 +204,9 @@ def processor():
 def levels_of(reference):
     """Lines on the levels of detail."""
     return ["## " + reference["title"], "",
-            f"The reference run is {reference['methods'][0]} (h: step). A second run, {reference['methods'][1]}, differs "
-            f"from the first by {reference['apart']['force']:.1e} in the forces, {reference['apart']['position']:.1e} in "
-            f"the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than the differences "
+            f"The reference run is {reference['methods'][0]} (h: step). A second run, {reference['methods'][1]}, "
+            f"differs from the first by {reference['apart']['force']:.1e} in the forces, "
+            f"{reference['apart']['position']:.1e} in the positions and {reference['apart']['angle']:.1e} in the angles. Errors smaller than the differences "
             "between these two runs mean nothing, so `benchmark_levels.csv` omits errors of this size.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", wrapped(CHOICE)]
 
@@ -236,7 +236,8 @@ def parts(tool):
     return ["## Insertion from cold, and cost against teeth", "",
             f"The solver finds the equilibrium of the wave generator in the round ring in {cold:.2g} ms (target: at "
             f"most 1 ms). A Newton iteration of the dynamic ring computes forces and tangent, and solves the linear "
-            f"equations. The time of an iteration grows with the number of teeth to the power {slope:.2f} (target: at most 1.05).", ""]
+            f"equations. The time of an iteration grows with the number of teeth to the power {slope:.2f} (target: at "
+            "most 1.05).", ""]
 
 
 def write_page(options, measured):
@@ -255,8 +256,8 @@ def write_page(options, measured):
                f"{', '.join(installed_version(package) for package in PACKAGES)}. Each setting ran "
                f"{options.runs} times, slow settings less often. The program ended a run after {options.limit:g} s of "
                "processor time, a run of an explicit solver or of RADAU5 after twice this time.")
-    lines = [wrapped(HEAD), "## Best peer against ours", "", *ratio_table(ratios), wrapped(READING), *levels_of(measured["levels"][0]),
-             *parts(options.parts), "---", "", machine]
+    lines = [wrapped(HEAD), "## Best peer against ours", "", *ratio_table(ratios), wrapped(READING),
+             *levels_of(measured["levels"][0]), *parts(options.parts), "---", "", machine]
     if absent:
         lines.append(f"Not installed: {', '.join(absent)}.")
     with open(os.path.join(options.docs, "benchmark.md"), "w", encoding="utf-8") as out:

@@ -161,11 +161,11 @@ def built_section(runner, recordings, fit, joints, train, docs):
 a table. `identify --controller` found the controller's gains of speed [N·m·s/rad] and position [1/s] from {GAINS_FROM}:
 {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
-The current has a ripple with {LOOP_LINES} periods per turn of the joint. The simulated amplitude of this ripple is
+The current has a ripple with {LOOP_LINES} periods per turn of the joint. The simulated amplitude of the ripple is
 within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the
 median the simulated amplitude is {float(np.median(known)):.2f} times the recorded amplitude. The error of the simulated
 current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
-[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits this prediction.
+[arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits the prediction of ripple.
 """]
 
 
@@ -206,17 +206,18 @@ current is given for the closed loop, for the prescribed motion (`follow`) and f
 steadily, the file also has the amplitude of the current at {LOOP_LINES} periods per turn of the joint.
 
 The delay between a set point and the controller's reaction (`delay` in `ur5.yaml`) was estimated from no6, whose motion
-no7 and no7_pushed repeat. The recordings of the other motions give {len(tracked)} cases (one joint in one recording).
-The twin's tracking error is within a factor of 1.5 of the recorded tracking error in {both_ways(tracked, 1.5)} cases,
-and within a factor of two in {both_ways(tracked, 2.0)} cases. The coefficient of correlation in time between these two
-tracking errors is {np.median(alike):.2f} in the median of the cases and {np.min(alike):.2f} at least. The twin's error
-of the current in moving rows is at most {WANTED:g} of the simple fit's error in {np.count_nonzero(currents <= WANTED)}
-of {len(currents)} cases, and below the simple fit's error in {np.count_nonzero(currents < 1.0)} cases.
+no7 and no7_pushed repeat. The recordings of motions other than this one give {len(tracked)} cases (one joint in one
+recording). The twin's tracking error is within a factor of 1.5 of the recorded tracking error in
+{both_ways(tracked, 1.5)} cases, and within a factor of two in {both_ways(tracked, 2.0)} cases. The correlation in time
+between the twin's and the recorded tracking error is {np.median(alike):.2f} in the median of the cases and
+{np.min(alike):.2f} at least. The twin's error of the current in moving rows is at most {WANTED:g} of the simple fit's
+error in {np.count_nonzero(currents <= WANTED)} of {len(currents)} cases, and below the simple fit's error in
+{np.count_nonzero(currents < 1.0)} cases.
 
 Ripple limits the prediction of the current. The error of the closed loop, divided by the error of the simple fit, is in
 the median {loop_slow:.2f} for frequencies below {SLOW:g} Hz, and {loop_fast:.2f} above {SLOW:g} Hz. With the prescribed
-motion (`follow`) these two medians are {told_slow:.2f} and {told_fast:.2f}. The simulated drives have no errors of
-manufacture and make no ripple, but the prescribed motion contains the ripple of the robot. In {bound} of
+motion (`follow`) the medians are {told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. The simulated drives have
+no errors of manufacture and make no ripple, but the prescribed motion contains the ripple of the robot. In {bound} of
 {len(currents)} cases the part of the simple fit's error above {SLOW:g} Hz is more than {WANTED:g} of the whole error of
 the simple fit.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""

@@ -17,13 +17,13 @@ HEAD = """# Beside a real robot
 
 `lab/run compare_real` writes this page.
 
-This page shows how far the twin differs from a sound robot. If the twin differs less from your robot than from these
-sound robots, the difference is no sign of a fault. The page also counts the right verdicts on recordings of sound
-joints and on recordings with artificially raised friction.
+This page shows how far the twin differs from a sound robot. If the twin differs less from your robot than from the
+sound robots of this page, the difference is no sign of a fault. The page also counts the right verdicts on recordings
+of sound joints and on recordings with artificially raised friction.
 
 The recordings come from one UR5, one UR10e and one drive of the maker NEURA, all sound. The recordings are not part of
-this project. The shipped friction of the UR5 and the widths of the verdict's interval come from these recordings. Your
-arm's friction may vary more than that of these arms.
+this project. The shipped friction of the UR5 and the widths of the verdict's interval come from recordings of this
+page. The friction of your arm may vary more between recordings than that of the recorded arms.
 
 For each robot the program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.

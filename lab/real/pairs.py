@@ -22,12 +22,12 @@ def pairs_text(arms, groups):
                 own = [joint["friction_ratio"] * joint["friction_shared"] for joint in joints]
                 together += list(np.log(own))
                 left += list(np.log(own) - np.median(np.log(own)))
-        spreads.append(f"In these pairs the friction of {group[0]} to {group[-1]} differs between the two "
-                       f"recordings by {100.0 * rms(np.array(together)):.1f} % rms, and by "
+        spreads.append(f"In pairs of recordings the friction of {group[0]} to {group[-1]} differs "
+                       f"by {100.0 * rms(np.array(together)):.1f} % rms, and by "
                        f"{100.0 * rms(np.array(left)):.1f} % rms after division by the median of the three joints.")
     return f"""
 The program also judged each recording with every other recording as reference, in {len(arms)} pairs of recordings. Of
 the {len(judged)} verdicts on single joints {alarms} are WARN or worse. In some pairs the program judged all three
-joints of a group. {" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from these
+joints of a group. {" ".join(spreads)} The widths of the [interval](compare.md#interval-of-the-friction) come from the
 pairs. So the pairs do not show how often the verdict is wrong on another arm.
 """

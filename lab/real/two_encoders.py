@@ -90,10 +90,10 @@ class Torsion:
         return [f"""
 **Torsion.** The figure shows the torsion (motor angle / 101 − output angle), minus the torsion without load at the same
 angle. The abscissa is the motor's torque at the joint minus {self.friction:.1f} N·m, the twin's friction at the speed
-of the sweep. The blue curve is the torsion of the catalogue's gear. Only the origin of this curve comes from the
+of the sweep. The blue curve is the torsion of the catalogue's gear. Only the origin of the blue curve comes from the
 recording, because the zeros of the encoders are arbitrary. The red curve has the catalogue's compliance times
-{self.scale:.3f} ± {self.width:.3f} (95 %). The program identified this factor on every second stripe of {STRIPE:g}° of
-the joint's angle and tested it on the others.
+{self.scale:.3f} ± {self.width:.3f} (95 %). The program identified the factor on every second stripe of {STRIPE:g}° of
+the joint's angle and tested it on the stripes between.
 
 ![Torsion against torque](images/real_robot/torsion.png)
 """, *table(["rms difference of the recorded torsion from", "stripes that were fitted [mrad]",
@@ -106,8 +106,8 @@ the joint's angle and tested it on the others.
 to the positive angles {self.halves[1]:.2f} times. These two factors differ by more than the stated interval, so the
 interval is too narrow. With a factor identified on one half of the angles the error of the torsion on the other half is
 larger than with the catalogue's curve. The error that remains is slow waves of the transmission error, which depend on
-load and mounting. One sweep cannot separate these waves from torsion. The catalogue's compliance lies between those of
-the two fits.
+load and mounting. One sweep cannot separate the slow waves from torsion. The catalogue's compliance lies between those
+of the two fits.
 """]
 
 
@@ -168,8 +168,8 @@ published lines. The line at 200 per turn of the joint gives a total cumulative 
 of {1e6 * self.pitch['circular_spline']:.1f} µm. The line at 202 per turn of the joint gives a total cumulative pitch
 deviation of the flexspline of {1e6 * self.pitch['flexspline']:.1f} µm. The scatter of the published points nearly hides
 the line at 202. ISO 1328 allows a pitch deviation of 17 µm in grade 5 and 12 µm in grade 4 at this size. The twin's
-lines at 400 and 404 result from these two pitch deviations. The line of the circular spline (200) is larger than that
-of the flexspline (202), as in the current of the UR5.
+lines at 400 and 404 result from the same two pitch deviations. The line of the circular spline (200) is larger than
+that of the flexspline (202), as in the current of the UR5.
 
 ![Lines of the transmission error](images/real_robot/transmission_error.png)
 
@@ -180,8 +180,8 @@ together with run-out of the flexspline, 10 µm each, makes 10 µrad without loa
 (`manufacture.wave_generator_eccentricity`, `manufacture.flexspline_eccentricity`). A motor encoder with an error of 1.1
 mrad by eccentricity makes 11 µrad at the output, whatever the load. A recording without load cannot separate the errors
 of wave generator and encoder. The recorded error has an amplitude of 0.6 mrad once and 0.35 mrad twice per turn of the
-output. The whole error of a gear of this kind may be 1 minute of arc (0.29 mrad). The recorded amplitudes are larger,
-so the output encoder is eccentric.
+output. The whole error of a gear of this kind may be 1 minute of arc (0.29 mrad). The recorded amplitudes are larger
+than this error, so the output encoder is eccentric.
 
 *Limits of this recording:* the size of the drive is inferred from its ratio and torque. The sweep turns in one
 direction only and takes 7 s. The torque is computed from the current. The error without load comes from a published

@@ -61,10 +61,10 @@ def section(runner, telemetry, docs, _images):
                                           "current_fit [A]", *LINES], rows)
     shares = np.array(shares)
     return [*heading, f"""
-The recordings are of 2020, at 100 Hz (S. Mamedov, *dynamic_calibration*), and contain no target angles. So the set
-points of `joint_twin arm` are the measured angles, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows. The
-twin thus receives the motion without its ripple, and a tracking error cannot be compared. The program identifies the
-drives on the recording {TRAIN} alone. The gains of the controller are typical values. [{ROWS}]({ROWS}) has for each
+The recordings are of 2020, at 100 Hz (S. Mamedov, *dynamic_calibration*), and contain no target angles. The set points
+of `joint_twin arm` are therefore the measured angles, smoothed by polynomials of degree {DEGREE} over {WINDOW} rows.
+The twin thus receives the motion without its ripple, and a tracking error cannot be compared. The program identifies
+the drives on the recording {TRAIN} alone. The gains of the controller are typical values. [{ROWS}]({ROWS}) has for each
 recording and joint the rms error of the current in moving rows [A], for the closed loop, for `follow` and for the
 simple fit with the recorded moment. The file also has the amplitude of the current at 200 periods per turn of the joint
 [A], of the twin and of the recording. No twin knows the payload of 2.805 kg of the last recording. The simple fit knows
@@ -72,9 +72,9 @@ the payload as far as the recorded moment of the controller contains its weight.
 
 The recordings that the drives were not identified on give {len(shares)} cases (one joint in one recording). The twin's
 error of the current in moving rows is at most {WANTED:g} of the simple fit's error in
-{np.count_nonzero(shares <= WANTED)} of these cases, and below the simple fit's error in
-{np.count_nonzero(shares < 1.0)} of these cases. In the median the twin's error is {float(np.median(shares)):.2f} of the
-simple fit's error and {float(np.median(beside_told)):.2f} of the error of `follow`, so the closed loop does not limit
-the prediction. The drives of `arm` and `follow` have no errors of manufacture, so the ripple of the twin is a fraction
-of the recorded ripple.
+{np.count_nonzero(shares <= WANTED)} of the cases, and below the simple fit's error in {np.count_nonzero(shares < 1.0)}
+of the cases. In the median the twin's error is {float(np.median(shares)):.2f} of the simple fit's error and
+{float(np.median(beside_told)):.2f} of the error of `follow`, so the closed loop does not limit the prediction. The
+drives of `arm` and `follow` have no errors of manufacture, so the ripple of the twin is a fraction of the recorded
+ripple.
 """]

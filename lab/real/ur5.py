@@ -33,7 +33,7 @@ COLUMNS = ["time", "velocity_measured", "current_measured", "current_predicted",
 CURRENT = f"""
 ### Error of the predicted current
 
-The program divides the twin's error of the current by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has these
+The program divides the twin's error of the current by the error of a simple fit. [{RATIO_ROWS}]({RATIO_ROWS}) has the
 quotients for the large joints, and [real_robot_current.csv](real_robot_current.csv) the errors of all joints in moving
 and in resting rows [A, rms]. The column *means* is for means of the current over {MEAN:g} s around each moving row (row
 faster than {MOVING:g} rad/s), the column *moving rows* for all single moving rows. The column `load` says from what the
@@ -46,7 +46,7 @@ rows.
 ![Error of means over 0.1 s](images/real_robot/means.png)
 
 The error that remains in moving rows is ripple with 200 periods per turn of a joint, because the two lobes pass a tooth
-of the circular spline 200 times per turn. The arm transmits this ripple from each joint to the currents of all joints.
+of the circular spline 200 times per turn. The arm transmits the ripple of each joint to the currents of all joints.
 
 At rest stiction holds the joint, and any current within a band gives the same angle. Two encoder counts (9.4 µrad) are
 a quarter of the presliding angle and correspond to a change of the current by some 0.3 A. So at rest the twin predicts
@@ -389,13 +389,13 @@ def verdict_section(runner, by_name, judged, docs):
 """ + f"""`joint_twin compare --arm ur5` judges each recording twice, alone and with the report of
 {TRAIN} as `--reference` ({TRAIN} itself with the report of {other}). The arm is sound in all recordings.
 [{VERDICT_ROWS}]({VERDICT_ROWS}) has the verdicts, and for each joint the friction divided by the friction in the
-reference, at the speeds that recording and reference have in common, without the factor that all joints share. In this
-file a cell is empty if the motion does not show the friction of the joint.
+reference, at the speeds that recording and reference have in common, without the factor that all joints share. In the
+CSV file a cell is empty if the motion does not show the friction of the joint.
 """, *of_pairs, f"""
 The recordings with raised friction are made from recordings of the sound arm. The program adds {100.0 * RAISED:.0f} %
-of the identified friction of one joint, or of all joints, to the recorded current of these joints. If the friction of
-one joint is raised, a verdict is right if it names this joint and no other. If the friction of all joints is raised, a
-verdict is right if it names no single joint. No verdict can name a joint whose friction the motion does not show.
+of the identified friction of one joint, or of all joints, to the recorded current. If the friction of one joint is
+raised, a verdict is right if it names this joint and no other. If the friction of all joints is raised, a verdict is
+right if it names no single joint. No verdict can name a joint whose friction the motion does not show.
 [{RAISED_ROWS}]({RAISED_ROWS}) has all runs.
 """, """
 ### Limits of these recordings
@@ -417,12 +417,12 @@ recording {TRAIN} alone (`joint_twin identify --arm`).
 {summary[1]}
 
 The recordings are {rows_of(recordings)}. A mean over {MEAN:g} s contains half as many rows in no2 (62.5 Hz) as in the
-other recordings. In no5_pushed a person pushes the arm. No twin predicts these pushes. no7 repeats the motion of no6 on
+other recordings. In no5_pushed a person pushes the arm. No twin predicts the pushes. no7 repeats the motion of no6 on
 another day.
 
 ### Load
 
-The program compares the load that follows from the arm's links with the controller's `target_moment`. Where this moment
-has a range of more than {LEAST_SPAN:g} N·m in a recording, the rms difference divided by the range is at most {loads}.
-[{LOAD_ROWS}]({LOAD_ROWS}) has this difference and this range for each recording and joint.
+The program compares the load that follows from the arm's links with the controller's `target_moment`. Where
+`target_moment` has a range of more than {LEAST_SPAN:g} N·m in a recording, the rms difference divided by the range is
+at most {loads}. [{LOAD_ROWS}]({LOAD_ROWS}) has rms difference and range for each recording and joint.
 """]

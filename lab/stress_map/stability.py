@@ -108,8 +108,8 @@ def boundary(judged):
     return (f"With the shipped parameters the longest accurate step is {steps('step, load steps of 100 N.m')} under "
             f"load steps. Under reversals of the motor torque (12 N·m, four times the limit) the longest "
             f"accurate step is {steps('step, reversal at 3030 rpm')}. The solver reported nothing in {len(quiet)} "
-            f"cells. In these cells the largest error is {percent(max(j.error for j in quiet))}, and the largest "
-            f"energy drift {percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
+            f"cells, whose largest error is {percent(max(j.error for j in quiet))} and whose largest "
+            f"energy drift is {percent(max(j.drift for j in quiet))}. Of the {len(flagged)} degraded cells "
             f"{sum(j.error <= judge.ACCURACY for j in flagged)} are accurate, so a warning of the solver often comes "
             f"before the result is wrong.")
 

@@ -59,7 +59,8 @@ def write(docs, complete, pages, titles):
     with open(os.path.join(docs, "validation_sections.csv"), "w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([["section", "rows", "hold"], *counts(
             (titles[page.section], page.rows) for page in pages if page.rows)])
-    lines += ["[validation_sections.csv](validation_sections.csv) has these counts for each section.",
+    lines += ["[validation_sections.csv](validation_sections.csv) counts the rows of each section, and the rows that "
+              "hold.",
               "", "## What a row is worth", "",
               "How strongly a row within its tolerance supports the model depends on the source of the row. "
               "[validation.csv](validation.csv) states the class of evidence of each row, and which parameter was "
