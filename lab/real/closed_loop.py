@@ -162,9 +162,9 @@ a table. `identify --controller` found the controller's gains of speed [N·m·s/
 {found}. [{BUILT_ROWS}]({BUILT_ROWS}) has all figures.
 
 The current has a ripple with {LOOP_LINES} periods per turn of the joint. The simulated amplitude of the ripple is
-within a factor of two of the recorded amplitude in {within} of {len(known)} cases (one joint in one recording). In the
-median the simulated amplitude is {float(np.median(known)):.2f} times the recorded amplitude. The error of the simulated
-current in moving rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
+within a factor of two of the recorded amplitude in {within} of {len(known)} cases. In the median the simulated
+amplitude is {float(np.median(known)):.2f} times the recorded amplitude. The error of the simulated current in moving
+rows is {float(np.nanmedian(errors)):.2f} of the simple fit's error in the median.
 [arm_twin.md](arm_twin.md#errors-of-manufacture) says what limits the prediction of ripple.
 """]
 

@@ -19,7 +19,7 @@ HEAD = """# Beside a real robot
 
 This page shows how far the twin differs from a sound robot. If the twin differs less from your robot than from the
 sound robots of this page, the difference is no sign of a fault. The page also counts the right verdicts on recordings
-of sound joints and on recordings with artificially raised friction.
+of sound joints and on recordings with raised friction.
 
 The recordings come from one UR5, one UR10e and one drive of the maker NEURA, all sound. The recordings are not part of
 this project. The shipped friction of the UR5 and the widths of the verdict's interval come from recordings of this
