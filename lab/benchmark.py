@@ -69,8 +69,8 @@ of tooth forces is Runge-Kutta 4 with steps of equal length.
 
 CHOICE = """[benchmark_levels.csv](benchmark_levels.csv) has the speed and the error of each level of detail. Choose the
 full ring if you want the force on every tooth at every step, or if the gear has no table. Choose the table for the live
-node and for runs offline. Choose the table at measured angles if you follow a recording. In this comparison the runs on
-the table solve the tooth forces only for the hundred samples of a run, which takes about 3 ms."""
+node and for runs offline. Choose the table, read at the measured angles, if you follow a recording. In this comparison
+the runs on the table solve the tooth forces only for the hundred samples of a run, which takes about 3 ms."""
 
 
 QUANTITIES = {"angle": "angles", "position": "tooth positions", "force": "tooth forces"}
