@@ -168,7 +168,7 @@ def main():
         f"The load average before the run was {load:.1f}."])
     lab.write(options.docs / "performance.md", "options", [
         "| option | set | time of a step over the shipped gear's |", "|---|---|---|", *option_rows(options), "",
-        f"`lab/run performance` measures steps on the full ring with all tooth forces, in the scenes that move. The "
+        f"`lab/run performance` measures steps on the full ring with all tooth forces, in scenes with motion. The "
         f"values are medians of {ALTERNATIONS} alternating runs."])
     lab.write(options.docs / "performance.md", "rates", [
         "| `solver.rate` | " + " | ".join(f"{rate / 1000:g} kHz" for rate in RATES) + " |",

@@ -68,7 +68,7 @@ def write(docs, complete, pages, titles):
               "part of the twin was fitted to. The table does not count quantities that only a broken gear would miss, "
               "but the CSV file shows the values of these quantities. The rows of the thesis' chapters 6 and 7 are for "
               "the gear of the thesis "
-              "(`config/golden.yaml`), not of the shipped gear. The thesis claims that the number of loaded teeth "
+              "(`config/golden.yaml`), not for the shipped gear. The thesis claims that the number of loaded teeth "
               "grows with the load. On the shipped gear this claim does not hold everywhere "
               "([gear_study.md](gear_study.md)).", ""]
     lines += markdown_table(["class", "rows", "hold"], counts(classes))
