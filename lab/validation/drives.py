@@ -34,7 +34,7 @@ SAME_SIZE = 1.3
 UR3E_KNOWN = {(17, 1.0): "preload and viscosity are fitted to the catalogue's gear. The friction that motor, seals and "
                          "output bearing add at this speed is not known",
               (14, 0.1): "the preload is fitted to the catalogue's starting torque of a new gear. A UR3e's elbow is "
-                         "expected to have less friction"}
+                         "expected to have less friction than a new gear"}
 
 GAIN = 10.7  # N.m at the joint per ampere of motor current, the controller's own ratio at rest
 SPEED_BINS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0, 1.3)  # rad/s at the joint
@@ -59,7 +59,7 @@ OWN_LOADS, OWN_SPEEDS = (20.0, 50.0, 100.0), (0.1, 0.5, 1.0)  # N.m, rad/s at th
 
 DIRECTION_GAP = 0.09e-3  # rad, between the directions of motion without load
 # Why a joint's friction does not hold.
-UR10E_KNOWN = {"base": "the twin has the friction fitted to the shoulder and the grease of a UR5. This base has 1.3 "
+UR10E_KNOWN = {"base": "the twin has the friction fitted to the shoulder and the grease of a UR5. The base has 1.3 "
                        "times the friction of the shoulder at every speed, and the tilting moment explains little of "
                        "the difference. Drives of one size differ"}
 TILTED = ("ur10e_20_02_12-40sec_12harm.csv", "ur10e_20_02_19_14harm50sec.csv", "ur10e_20_02_19_14harm50secLoad.csv")

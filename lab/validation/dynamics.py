@@ -199,7 +199,8 @@ force of a tooth, 4 ω² w0 m, is then 1.3 N at full speed, of some 8 N of conta
 
 def check_errors(page, name, where, run):
     for key, limit, what in (("position", 0.1, "tooth points"), ("torsion", 0.2, "torsion"),
-                             ("contact_force", 1.0, "F_WG per tooth"), ("mesh_force", 1.0, "flank force per tooth")):
+                             ("contact_force", 1.0, "force of the wave generator on a tooth"),
+                             ("mesh_force", 1.0, "flank force per tooth")):
         page.check(f"dynamics.{name}_{key}", f"{what} {where}: dynamic against quasi-static, rms", CLAIM, AtMost(limit),
                    100.0 * run[key]["relative_rms"], "%", "the claim" if limit == 1.0 else "well below it",
                    known=RINGING if f"{name}_{key}" in RINGS else "", evidence=SELF_CONSISTENT)

@@ -111,8 +111,8 @@ conductance and mean power, starts the second part at the temperature found ther
                                 f"thermal.housing_rise={start:.6f}", f"thermal.grease_rise={start:.6f}")
         judged = known & ~before
         error = np.sqrt(np.mean((np.interp(time - pause, moment, degrees) - temperatures[:, k])[judged] ** 2))
-        page.check(f"heat.ur3.{joint}", f"{joint}: temperature in the second part, rms error", "recording",
-                   AtMost(0.5), error, "K", "0.5 K make 1.5 % of the friction that grows with speed",
+        page.check(f"heat.ur3.{joint}", f"{joint}: temperature in the second part of the recording, rms error",
+                   "recording", AtMost(0.5), error, "K", "0.5 K make 1.5 % of the friction that grows with speed",
                    known="" if joint in LARGE else
                    "the arm around a wrist warms up more slowly than the wrist. The twin has no part for the arm",
                    evidence=fitted("end, rise and time constant of each joint to the first part of this recording"))
