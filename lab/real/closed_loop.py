@@ -214,12 +214,12 @@ between the twin's and the recorded tracking error is {np.median(alike):.2f} in 
 error in {np.count_nonzero(currents <= WANTED)} of {len(currents)} cases, and below the simple fit's error in
 {np.count_nonzero(currents < 1.0)} cases.
 
-Ripple limits the prediction of the current. The error of the closed loop, divided by the error of the simple fit, is in
-the median {loop_slow:.2f} for frequencies below {SLOW:g} Hz, and {loop_fast:.2f} above {SLOW:g} Hz. With the prescribed
-motion (`follow`) the medians are {told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. The simulated drives have
-no errors of manufacture and make no ripple, but the prescribed motion contains the ripple of the robot. In {bound} of
-{len(currents)} cases the part of the simple fit's error above {SLOW:g} Hz is more than {WANTED:g} of the whole error of
-the simple fit.
+Ripple limits the prediction of the current. The closed loop's error of the current, divided by that of the simple fit,
+is in the median {loop_slow:.2f} for frequencies below {SLOW:g} Hz, and {loop_fast:.2f} above {SLOW:g} Hz. With the
+prescribed motion (`follow`) the medians are {told_slow:.2f} below and {told_fast:.2f} above {SLOW:g} Hz. The simulated
+drives have no errors of manufacture and make no ripple, but the prescribed motion contains the ripple of the robot. In
+{bound} of {len(currents)} cases the part of the simple fit's error above {SLOW:g} Hz is more than {WANTED:g} of the
+whole error of the simple fit.
 """, *built_section(runner, recordings, fit, joints, train, docs), f"""
 ![Tracking error of three joints in {shown}, recorded and in closed loop]({PICTURE})
 """]
