@@ -182,9 +182,9 @@ def section(results, options, load):
     return [*table(results), "",
             f"`lab/run jitter --duration {options.duration:g}` measured these values on {os.cpu_count()} cores of a "
             f"shared virtual machine ({processor()}, Linux {os.uname().release}). The load average before the first "
-            f"case was {load:.1f}. The host of the virtual machine also runs other machines, so *quiet* means only "
-            "that the program ran no processor hog. A thread with SCHED_FIFO precedes all other threads of the virtual "
-            "machine, but not those of the host.", "",
+            f"case was {load:.1f}. The host of the virtual machine also runs other virtual machines, so *quiet* means "
+            "only that `lab/run jitter` started no hog (a program that keeps a core busy). A thread with SCHED_FIFO "
+            "precedes all other threads of the virtual machine, but not those of the host.", "",
             "![Histograms of wake-up jitter and of lateness](images/jitter.png)"]
 
 
