@@ -135,8 +135,8 @@ def table(kinds, found, sound):
     lines = [f"The tool of the sound arm leaves its path by at most {sound['path_max']:.2f} mm, "
              f"{sound['path_rms']:.2f} mm rms. The repeatability of the sound arm is "
              f"{sound['repeatability']:.3f} mm (ISO 9283; the maker states {MAKERS_REPEATABILITY:g} mm). "
-             f"The table has faults of severity {SEVERITIES[1]:g}. Each figure belongs to the joint, named in "
-             "the cell, in which the fault changes the figure most. [arm_faults.csv](arm_faults.csv) has all joints "
+             f"The table has faults of severity {SEVERITIES[1]:g}. Each cell has the value for the joint, named in "
+             "the cell, in which the fault changes this value most. [arm_faults.csv](arm_faults.csv) has all joints "
              "and severities.", "",
              "| fault | largest distance of the tool from its path [mm], joint | shift of the tool at rest [mm], joint "
              "| repeatability [mm], joint | change of the joint's current [%], joint "

@@ -241,5 +241,5 @@ def main(tool, docs, work, only):
             table.writerows(rows)
         counts = "; ".join(f"{verdicts.count(name)} {name}" for name in judge.VERDICTS if name in verdicts)
         lab.write(os.path.join(docs, "arm_twin.md"), "arm_stress",
-                  [f"Numbers of the {len(rows)} runs by result: {counts} ([arm_stress.csv](arm_stress.csv))."])
+                  [f"The {len(rows)} runs have these results: {counts} ([arm_stress.csv](arm_stress.csv))."])
     return 0 if all(verdict in judge.GOOD for verdict in verdicts) else 1
