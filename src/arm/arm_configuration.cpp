@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 namespace
 {
-/// Returns the file that the link `file` leads to, if both are in one directory: `file` is then another name of that
-/// arm. Returns none if `file` is not such a link.
+/// Returns the file that the link `file` leads to if link and file are in the same directory. The link is then another
+/// name of the file's arm. Returns none if `file` is no link, or if it leads to another directory.
 std::optional<fs::path> namesakeOf(const fs::path& file)
 {
   std::error_code error;
@@ -180,8 +180,8 @@ std::vector<std::string> driverNames(const ArmDescription& arm)
 
 void giveOwnSeeds(std::vector<Parameters>& drives)
 {
-  constexpr int SEEDS = 100'000;                   // number of values of the parameter pitch seed
-  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // number of values of the parameter noise_seed
+  constexpr int SEEDS = 100'000;                   // number of allowed values of a pitch seed [-]
+  constexpr std::int64_t NOISE_SEEDS = 1LL << 31;  // number of allowed values of sensors.noise_seed [-]
   for (std::size_t i = 0; i < drives.size(); ++i)
   {
     int& noise = drives[i].sensors.noise_seed;
@@ -189,7 +189,7 @@ void giveOwnSeeds(std::vector<Parameters>& drives)
     ManufactureParameters& errors = drives[i].manufacture;
     for (PitchParameters* pitch : { &errors.flexspline_pitch, &errors.circular_spline_pitch })
     {
-      // The seed has an effect only with a deviation. Joints with equal seeds can share a response surface.
+      // Without pitch deviations the seed has no effect and stays, so that joints can share a response surface.
       if (pitch->deviation > 0.0)
       {
         pitch->seed = (pitch->seed + 2 * static_cast<int>(i)) % SEEDS;

@@ -23,11 +23,11 @@ std::string mainName(const std::string& name, const std::filesystem::path& direc
 /// @throws ParameterError if neither file exists.
 std::string findArm(const std::string& name, const std::filesystem::path& directory);
 
-/// Files of the arms in a directory of configurations, sorted by name. The list has no links beside an arm's file,
-/// which are further names of this arm.
+/// Files of the arms in a directory of configurations, sorted by name. The list does not contain links in the same
+/// directory to an arm's file, because a link is a further name of this arm.
 std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directory);
 
-/// The names of the joints, from the base on.
+/// Names of the arm's joints in messages, from the base on.
 std::vector<std::string> jointNames(const ArmDescription& arm);
 
 /// Names of the arms in a directory of configurations whose joints have the same names as those of `arm`.
@@ -40,23 +40,24 @@ std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::strin
 /// Short names of the joints, as a list for error texts.
 std::string shortNames(const ArmDescription& arm);
 
-/// Parameters of the drive of a joint. The default configuration comes first. The joint's overlays and parameters
-/// replace its values. The file SHORT_NAME.yaml of the directory `identified`, if this is not empty, replaces values
-/// last. The load of the drive comes from the arm. @throws ParameterError.
+/// Parameters of the drive of a joint. The joint's overlays, then the joint's parameters, replace values of the default
+/// configuration. If `identified` is not empty, the file SHORT_NAME.yaml in this directory replaces values last.
+/// telemetry.load is `arm`. @throws ParameterError.
 ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// armJointParameters() for a drive in a closed loop: ignores an identified inertia below the configured one, because
-/// the currents of a recording can show too small an inertia of the rotor. @throws ParameterError.
+/// As armJointParameters(), but for a drive that a controller moves. Ignores an identified inertia of the rotor below
+/// the configured inertia, because the currents of a recording can show too small an inertia. @throws ParameterError.
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Parameters of all drives of the arm. solver.scene is `auto` unless the joint's files or the options set it.
+/// Parameters of the drive of each joint. solver.scene is `auto` unless the joint's files or the options set this
+/// parameter.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 
-/// Gives the joints the gains of the arm's controller, if the directory `identified` holds a file of gains. An empty
-/// `identified` means that there is no directory. @throws ParameterError.
+/// Gives the joints the controller gains from the file GAINS_FILE in the directory `identified`. Changes nothing if
+/// this file does not exist or `identified` is empty. @throws ParameterError.
 void addIdentifiedGains(const std::string& identified, ArmDescription& arm);
 constexpr const char* GAINS_FILE = "controller.yaml";
 
@@ -64,15 +65,16 @@ constexpr const char* GAINS_FILE = "controller.yaml";
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 
-/// Gives each drive of an arm its own seeds, so that its gear and its noise differ. The joint's number from the base on
-/// is added to the seed of its sensors' noise, and twice this number to the seeds of its pitch deviations.
+/// Gives each drive of an arm its own seeds, so that no two drives have the same gear or the same noise. Adds the
+/// joint's number from the base on to the seed of the sensor noise, and twice this number to the seeds of the pitch
+/// deviations.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
 /// Adds faults to the drives. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is the name or the
 /// short name of a joint. @throws ParameterError naming the fault.
 void addArmFaults(const ArmDescription& arm, const std::vector<std::string>& faults, std::vector<Parameters>& drives);
 
-/// Parameters of the drives of all joints, with different seeds and with `faults`. @throws ParameterError.
+/// Parameters of the drive of each joint, with the seeds of giveOwnSeeds() and with `faults`. @throws ParameterError.
 std::vector<Parameters> armDrives(const ArmDescription& arm, const ConfigurationOptions& options,
                                   const std::string& identified, const std::vector<std::string>& faults);
 

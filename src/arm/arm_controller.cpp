@@ -82,7 +82,7 @@ double ArmController::speed(const ArmTwin& twin, std::size_t joint) const noexce
   return twin.stamp() == controlled_ ? before_[joint] : speed_[joint];
 }
 
-/// Puts the set point into the delay lines of the joints. The first set point after a reset fills the whole lines.
+/// Adds the set point to the ring buffers line_. The first set point after a reset fills the whole ring buffers.
 void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept
 {
   dynamics_.torques(set_point, rigid_);
@@ -104,7 +104,8 @@ void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& se
   }
 }
 
-/// The set point of a joint that is `periods` of the control old, by linear interpolation.
+/// Set point of a joint that is older than the newest set point by `periods` periods of the control, by linear
+/// interpolation.
 ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) const noexcept
 {
   const std::vector<Wanted>& line = line_[joint];

@@ -30,32 +30,34 @@ public:
   /// Inertia of the motor, seen from the joint [kg.m^2].
   static double motorInertia(const Parameters& drive);
 
-  /// Gains for a drive without gains of its own. The bandwidth of the speed control is 25 Hz, that of the position
-  /// control 3 Hz, and the controller feeds no friction forward.
+  /// Gains for a drive to which the arm's file gives no gains. The bandwidth of the speed control is 25 Hz, that of the
+  /// position control 3 Hz, and the controller feeds no friction forward.
   static JointGains defaultGains(const Parameters& drive);
 
   /// `rate`: rate of the control [Hz], which must divide solver.rate.
   ArmController(const ArmDescription& arm, const ArmTwin& twin, std::vector<JointGains> gains, double rate);
 
-  void reset() noexcept;  ///< sets integrals and counter to zero
+  void reset() noexcept;  ///< sets the integrals of all joints, their last speeds and limitedControls() to 0
   void setPayload(const Payload& payload) noexcept
   {
     dynamics_.setPayload(payload);
-  }  ///< payload whose torque the controller feeds forward
+  }  ///< sets the payload whose torque the controller feeds forward
 
   /// Commands the torque of each drive from now on. Call this function at each instant for which isDue() is true, with
   /// the set point of that instant.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
-  bool isDue(const ArmTwin& twin) const noexcept;  ///< whether the control acts at the present instant
+  bool isDue(const ArmTwin& twin) const noexcept;  ///< whether a period of the control begins at the present instant
 
   /// Rigid-body torque of each joint for the last set point, which acts after ArmJoint::delay [N.m].
   const std::vector<double>& rigidTorques() const noexcept { return rigid_; }
-  /// Number of controls since reset in which a joint's feedback was at its limit while its brake was off [-].
+  /// Number of calls of control() since the reset in which a joint's feedback was at its limit while its brake was off
+  /// [-]. A call counts once for each such joint.
   std::uint64_t limitedControls() const noexcept { return limited_; }
-  /// Whole torque that the controller feeds forward: rigid-body torque, inertia of the motor and friction [N.m].
+  /// Whole torque that the controller feeds forward at a joint for the last set point: rigid-body torque, inertia of
+  /// the motor and friction [N.m].
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
-  /// Speed of a joint by the motor's encoder [rad/s]. While the controller runs, it is the speed from which the
+  /// Speed of a joint by the motor's encoder [rad/s]. While the controller runs, this is the speed from which the
   /// controller computed the present torque; otherwise it is the present speed.
   double speed(const ArmTwin& twin, std::size_t joint) const noexcept;
 
@@ -85,9 +87,9 @@ private:
   std::vector<double> rigid_;
   std::vector<double> feed_forward_;
   std::vector<double> integral_;  // integral part of each joint's torque [N.m]
-  std::vector<double> speed_;     // speeds of the joints at the last control [rad/s]
-  std::vector<double> before_;    // speeds of the joints at the control before the last [rad/s]
-  Stamp controlled_{ NEVER };     // stamp of the last control
-  std::uint64_t limited_{};       // number of controls with a limited feedback [-]
+  std::vector<double> speed_;     // speeds of the joints at the last call of control() [rad/s]
+  std::vector<double> before_;    // speeds of the joints at the last but one call of control() [rad/s]
+  Stamp controlled_{ NEVER };     // stamp of the last call of control()
+  std::uint64_t limited_{};       // the value of limitedControls() [-]
 };
 }  // namespace hjt

@@ -30,7 +30,7 @@ bool holds(const ParameterMap& map, const std::string& key)
   return map.count(key) != 0 || (below != map.end() && below->first.rfind(key + ".", 0) == 0);
 }
 
-/// Moves the entries below `key` from the map to the result. Their keys in the result lack the prefix `key`.
+/// Moves the entries whose keys begin with `key` and a dot from the map to the result, without this beginning.
 ParameterMap takeBelow(ParameterMap& map, const std::string& key)
 {
   const std::string prefix = key + ".";
@@ -202,7 +202,8 @@ std::size_t depthOf(const std::string& xml)
   return deepest;
 }
 
-/// Keeps the first error of the URDF parser while this object exists. The parser skips numbers that it cannot read.
+/// Keeps the first error of the URDF parser while this object exists. The object is needed because the parser only
+/// reports numbers that it cannot read, and skips them.
 class ParserErrors : public console_bridge::OutputHandler
 {
 public:
@@ -224,7 +225,7 @@ public:
   const std::string& first() const { return first_; }  ///< first error; empty: no error
 
 private:
-  /// The lock is needed because the whole process has one handler of the parser's reports.
+  /// A lock is needed because all threads of the process share one handler of the parser's reports.
   static std::mutex& mutex()
   {
     static std::mutex of_handler;
@@ -411,7 +412,7 @@ ArmLink linkOf(const KDL::Segment& segment)
 
 std::string payloadErrors(const Payload& payload)
 {
-  // The comparisons are false for NaN, so NaN is outside of every range.
+  // The comparisons are false for NaN, so a payload with NaN is out of range.
   const auto is_within = [](double value, const Range& range) { return value >= range.min && value <= range.max; };
   if (!is_within(payload.mass, PAYLOAD_MASS))
   {

@@ -29,7 +29,7 @@ struct ArmJoint
   std::string short_name;             ///< unique name of the joint in files and namespaces
   std::vector<std::string> overlays;  ///< configuration files of the drive; later files replace values of earlier ones
   ParameterMap parameters;            ///< parameters of the drive, which replace values of the overlays
-  Range angles{ -100.0, 100.0 };      ///< range of the angle in the URDF; 16 turns to each side without limits [rad]
+  Range angles{ -100.0, 100.0 };      ///< allowed angles by the URDF; 16 turns to each side if it has no limits [rad]
   double speed_limit{};               ///< largest speed of the joint; 0: not given [rad/s]
   double torque_limit{};              ///< largest torque at the output; 0: not given [N.m]
   double feedback_limit{};            ///< largest feedback torque of the controller; 0: no limit [N.m]
@@ -59,7 +59,7 @@ enum class LinkMotion : std::uint8_t
   SLIDES
 };
 
-/// Numbers that describe a link of an arm and the joint that carries it.
+/// A link of an arm, and the joint that carries the link.
 struct ArmLink
 {
   LinkMotion motion{};
@@ -68,7 +68,7 @@ struct ArmLink
   std::array<double, 3> origin{};  ///< a point of the joint's axis in the frame of the link before [m]
   std::array<double, 3>
       position{};  ///< origin of the link's frame in the frame of the link before, at a joint angle of 0 [m]
-  std::array<double, 9> rotation{};  ///< rotation of the link's frame in the frame of the link before, by rows [-]
+  std::array<double, 9> rotation{};  ///< rotation from the link's frame to that of the link before, by rows [-]
   double mass{};                     ///< mass of the link [kg]
   std::array<double, 3> centre{};    ///< centre of mass of the link in the link's frame [m]
   std::array<double, 6> inertia{};   ///< inertia of the link about its centre of mass: xx, yy, zz, xy, xz, yz [kg.m^2]
@@ -90,8 +90,7 @@ struct ArmDescription
 };
 
 /// Reads the file of an arm and the links of its URDF. @throws ParameterError naming file, line and key of a value that
-/// is unreadable, missing, unknown, mistyped or out of range, and for the reasons that readLinks
-/// names.
+/// is unreadable, missing, unknown, mistyped or out of range, and for the reasons of readLinks().
 ArmDescription readArmDescription(const std::string& path);
 
 /// Reads from the URDF the links of the chain from base to tip and the ranges of the joints' angles.

@@ -98,7 +98,8 @@ struct ArmDynamics::Solver
     }
   }
 
-  /// Calls `visit` with each segment and the pose of its end, from the base on. Returns the pose of the tip.
+  /// Calls `visit` with each segment of the chain and the pose of the segment's end, from the base on. Returns the pose
+  /// of the tip.
   template <class Visit>
   KDL::Frame walk(const Visit& visit) const
   {

@@ -37,8 +37,8 @@ struct ToolPose
 inline constexpr double DRAG_SPEED = 0.01;  ///< speed of the tip above which the drag has nearly its full force [m/s]
 
 /// Rigid-body dynamics of an arm by KDL's recursive Newton-Euler: weight, inertia, Coriolis forces and coupling of all
-/// links and the payload. The inertia of the motors is not in this model but in that of the drives. After construction
-/// only a copy throws or allocates.
+/// links and the payload. This model has no inertia of the motors, because the model of each drive contains the inertia
+/// of its motor. After construction only a copy throws or allocates.
 class ArmDynamics
 {
 public:
@@ -51,19 +51,19 @@ public:
   std::size_t joints() const noexcept;
   double mass() const noexcept;  ///< mass of all links and of the payload [kg]
 
-  /// Computes the torque [N.m] at the output of each joint that makes the motion. A positive torque resists positive
-  /// motion. Both vectors have an entry for each joint.
+  /// Computes the load [N.m] at the output of each joint in this motion. A positive load resists positive motion.
+  /// `motion` and `torques` have an entry for each joint.
   void torques(const std::vector<JointMotion>& motion, std::vector<double>& torques) noexcept;
 
   /// Sets the force [N] and the moment about the tip [N.m] that act on the tip from outside, in the frame of the base.
-  /// torques() contains their effect from then on.
+  /// torques() contains the effect of force and moment from then on.
   void setWrench(const ArmWrench& wrench) noexcept { wrench_ = wrench; }
 
   void setPayload(const Payload& payload) noexcept;  ///< replaces the payload of the arm's description
 
-  /// Computes the symmetric mass matrix of links and payload [kg.m^2]. Each row and column is for a joint.
+  /// Computes the symmetric mass matrix of links and payload [kg.m^2]. Row and column i are those of joint i.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
-  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< potential energy of the weight [J]
+  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< energy of all weights [J]
   ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;
 
 private:

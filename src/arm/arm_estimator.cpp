@@ -15,7 +15,8 @@ namespace hjt
 {
 namespace
 {
-/// Indices of the terms: first those of the arm, then those of the two groups of joints, then those of each joint.
+/// Indices of the unknowns of the fit (terms): first those of the arm, then those of the two groups of joints, then
+/// those of each joint.
 enum Term : int
 {
   JUMP = ArmEstimator::LOAD,
@@ -37,10 +38,10 @@ enum OwnTerm : int
   USED = GROUP + 1 + PER_JOINT  // number of terms on which the rows of one joint depend
 };
 
-constexpr double NEVER = 1e-6;   // width of the prior of a term that the estimator does not consider
+constexpr double NEVER = 1e-6;   // prior width of a term that the estimator does not change
 constexpr double STUDENT = 4.0;  // degrees of freedom of Student's t distribution for the errors of the rows
 constexpr int STARTS = 4;
-constexpr int HELD = -1;  // number of a start with all priors at full weight
+constexpr int HELD = -1;  // argument `start` of looseness(): all priors have their full weight
 
 int groupOf(std::size_t joint)
 {
@@ -53,8 +54,9 @@ int ownOf(std::size_t joint)
   return OWN + PER_JOINT * static_cast<int>(joint);
 }
 
-/// Index in Slope of the derivative by a term. Several terms share a derivative: the payload and its jump, or terms of
-/// arm, group and joint. The derivatives are those by load, gain, friction, cold friction, offset, loss and inertia.
+/// Index in Slope of the derivative of the explained current by term number `used`. Several terms share a derivative:
+/// the payload and its jump, or the terms of arm, group and joint. Slope holds the derivatives by load, gain, friction,
+/// cold friction, offset, loss and inertia.
 int slopeOf(int used)
 {
   constexpr std::array<int, USED - GAIN> OF_OTHERS{ 0, 1, 2, 1, 0, 1, 2, 3, 4, 5 };
@@ -63,38 +65,39 @@ int slopeOf(int used)
                        ArmEstimator::LOAD + OF_OTHERS[static_cast<std::size_t>(used - GAIN)];
 }
 
-// Widths of the priors, chosen by recordings of a UR5 and a UR10e (docs/arm.md, Payload).
-constexpr double MASS = 0.3;             // [kg]
-constexpr double MOMENT = 0.05;          // [kg.m]
-constexpr double TILT = 0.2;             // [m/s^2]
-constexpr double TOOL_DRAG = 2.0;        // [N]
-constexpr double JUMP_MASS = 1.0;        // [kg]
-constexpr double JUMP_MOMENT = 0.1;      // [kg.m]
-constexpr double ARM_GAIN = 0.01;        // [-]
-constexpr double ARM_FRICTION = 0.1;     // [-]
-constexpr double ARM_COLD = 1.0;         // [10 K]
-constexpr double GROUP_FRICTION = 0.04;  // [-]
-constexpr double JOINT_GAIN = 0.03;      // [-]
-constexpr double ALIKE_GAIN = 0.003;     // width for the gain of a joint whose load is less than its friction [-]
-constexpr double JOINT_FRICTION = 0.05;  // [-]
-constexpr double JOINT_COLD = 0.3;       // [10 K]
-constexpr double JOINT_OFFSET = 0.1;     // [A]
-constexpr double JOINT_LOSS = 0.02;      // loss over load [-]
-constexpr double JOINT_INERTIA = 0.3;    // width for the relative change of the rotor's inertia [-]
+// Widths of the priors of the terms, chosen from recordings of a UR5 and a UR10e (docs/arm.md, Payload).
+constexpr double MASS = 0.3;             // mass of the payload [kg]
+constexpr double MOMENT = 0.05;          // moments of the payload [kg.m]
+constexpr double TILT = 0.2;             // change of gravity [m/s^2]
+constexpr double TOOL_DRAG = 2.0;        // drag [N]
+constexpr double JUMP_MASS = 1.0;        // change of the payload's mass [kg]
+constexpr double JUMP_MOMENT = 0.1;      // change of the payload's moments [kg.m]
+constexpr double ARM_GAIN = 0.01;        // factor of all gains - 1 [-]
+constexpr double ARM_FRICTION = 0.1;     // factor of all frictions - 1 [-]
+constexpr double ARM_COLD = 1.0;         // coldness of all drives [10 K]
+constexpr double GROUP_FRICTION = 0.04;  // factor of a group's frictions - 1 [-]
+constexpr double JOINT_GAIN = 0.03;      // factor of a joint's gain - 1 [-]
+constexpr double ALIKE_GAIN = 0.003;     // as JOINT_GAIN, if the joint's load is less than its friction [-]
+constexpr double JOINT_FRICTION = 0.05;  // factor of a joint's friction - 1 [-]
+constexpr double JOINT_COLD = 0.3;       // coldness of a joint's drive [10 K]
+constexpr double JOINT_OFFSET = 0.1;     // offset of a joint's current [A]
+constexpr double JOINT_LOSS = 0.02;      // loss of a joint over its load [-]
+constexpr double JOINT_INERTIA = 0.3;    // relative change of the inertia of a joint's rotor [-]
 
-constexpr std::size_t FEWEST = 20;  // least number of rows with which a joint counts
+constexpr std::size_t FEWEST = 20;  // least number of rows of a joint that counts
 
 constexpr double INDEPENDENT = 40.0;  // largest number of independent rows that the rows of a joint stand for
 constexpr double LEAST = 0.02;        // least standard deviation of the errors in the rows of a real arm [A]
 
-/// Negative logarithm of a row's probability. `square`: square of the row's error in standard deviations.
+/// Negative logarithm of the probability density of a row's error, less its value at 0. `square`: square of the error
+/// in standard deviations.
 double rarer(double square)
 {
   return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
 }
 
-/// Factor on the weight of a term's prior in the first rounds. It is small for the terms that the start leaves free:
-/// start 0 the load, start 1 all terms, start 2 load and friction, start 3 friction.
+/// Factor on the weight of a term's prior in the first rounds [-]. The factor is below 1 for the terms of the load in
+/// start 0, for all terms in start 1, for those of load and friction in start 2, and for those of friction in start 3.
 double looseness(int start, int term)
 {
   constexpr double OF_LOAD = 0.01;
@@ -113,7 +116,7 @@ struct ArmEstimator::Prior
   std::vector<bool> normal;  // true: the prior is normal; false: it is a Cauchy distribution
 };
 
-/// Values of all terms, with their information matrix and cost.
+/// Values of all terms, with the information matrix and the cost at these values.
 struct ArmEstimator::Point
 {
   Eigen::VectorXd at;
@@ -124,14 +127,14 @@ struct ArmEstimator::Point
   double cost{ std::numeric_limits<double>::infinity() };
 };
 
-/// Errors of the rows of one joint, with their derivatives by the terms.
+/// Errors of the rows of one joint, with the derivatives of the explained currents by the terms.
 struct ArmEstimator::Work
 {
   Eigen::VectorXd error;  // [A]
   std::vector<Slope> slopes;
 };
 
-/// Sums over the rows of one state: products of the slopes with each other and with the errors.
+/// Sums over a joint's rows in legs of one state: products of the rows' slopes with each other and with the errors.
 struct ArmEstimator::Products
 {
   Eigen::Matrix<double, SLOPES, SLOPES> slopes = Eigen::Matrix<double, SLOPES, SLOPES>::Zero();
@@ -220,7 +223,7 @@ double ArmEstimator::errorOf(std::size_t joint, const Row& of, bool state, const
   return of.current - gain * inner - at[own + OWN_OFFSET];
 }
 
-/// Measured over predicted currents of all rows, by least squares [-].
+/// Factor on the predicted currents of all rows that fits the measured currents best, by least squares [-].
 double ArmEstimator::multiple() const
 {
   double both = 0.0;
@@ -236,7 +239,8 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// The likeliest point of all starts. The last start assumes that one factor scales all predicted currents.
+/// The likeliest point that the search finds from several starts. The last start assumes that one factor scales all
+/// predicted currents.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;
@@ -253,11 +257,11 @@ ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<boo
   return best;
 }
 
-/// States of the legs by their masses, less the mass of a point. A leg has state 1 if its mass is above the middle
-/// between the smallest and the largest mass.
+/// State of each leg, by the mass at the tip that explains the errors which the point `by` leaves in the leg. A leg has
+/// state 1 if its mass is above the middle between the smallest and the largest mass.
 std::vector<bool> ArmEstimator::parted(const Point& by) const
 {
-  constexpr double NOISE = 0.05;  // least standard deviation of the errors of a joint [A]
+  constexpr double NOISE = 0.05;  // least assumed standard deviation of the errors in a joint's rows [A]
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(legs_), 2);
   for (std::size_t i = 0; i < rows_.size(); ++i)
   {
@@ -279,7 +283,7 @@ std::vector<bool> ArmEstimator::parted(const Point& by) const
   return states;
 }
 
-/// The state of each leg that its rows fit better.
+/// For each leg the state that fits the leg's rows better, with the terms of the point `by`.
 std::vector<bool> ArmEstimator::likelier(const Point& by) const
 {
   std::vector<double> costs(legs_);  // cost of state 1 - cost of state 0, for each leg
@@ -299,9 +303,9 @@ std::vector<bool> ArmEstimator::likelier(const Point& by) const
   return states;
 }
 
-/// The likeliest point with a payload that changes between two states from leg to leg. `states` stays empty if all legs
-/// have the same state. The search begins twice: with states by the difference of each leg from the point `without`,
-/// and by its difference from the configured arm.
+/// The likeliest point with a payload that changes between two states from leg to leg. Sets the state of each leg in
+/// `states`. `states` stays empty if all legs have the same state. The search begins with two choices of the states
+/// (parted()): one from the errors that the point `without` leaves, one from those of the configured arm.
 ArmEstimator::Point ArmEstimator::withJump(const Freedom& may, const Point& without, std::vector<bool>& states) const
 {
   constexpr int TURNS = 6;
@@ -455,8 +459,9 @@ void ArmEstimator::addPrior(const Prior& prior, int start, Point& point, Eigen::
     right[k] -= weight * point.at[k];
     point.rareness += is_normal ? 0.5 * t * t : std::log1p(t * t);
   }
-  // This prior holds the size of gravity, up to errors of the links' masses, which have the same effect. In the first
-  // rounds gravity may turn over. Without configured gravity the estimator has no direction to find.
+  // This prior keeps the size of gravity within the errors of the links' masses, which have the same effect as another
+  // size. The prior is off while the weight of the load's priors is reduced, so that gravity can turn over. Without
+  // configured gravity the prior has no meaning.
   constexpr double LINKS = 0.02;  // standard deviation of the links' masses, as a share [-]
   const Eigen::Vector3d total = gravity_ + point.at.segment<GRAVITY>(PAYLOAD);
   if (looseness(start, PAYLOAD) < 1.0 || !(prior.width[PAYLOAD] > NEVER) || gravity_.isZero() || total.isZero())
@@ -487,7 +492,7 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
   {
     deviation = std::max(robustDeviation(error), LEAST);
   }
-  // The weights of the rows follow from the last standard deviation and give a likelier one.
+  // The last standard deviation gives the weights of the rows, and these weights give a likelier standard deviation.
   Eigen::ArrayXd squares = (error / deviation).array().square();
   deviation = std::max(deviation * std::sqrt((squares * (STUDENT + 1.0) / (STUDENT + squares)).mean()), LEAST);
   squares = (error / deviation).array().square();
@@ -519,22 +524,22 @@ void ArmEstimator::addRows(std::size_t joint, const std::vector<bool>& states, W
 
 bool ArmEstimator::isNear(const Point& point, const Point& other)
 {
-  constexpr double NEAR = 0.1;  // largest distance of near points, in posterior standard deviations [-]
+  constexpr double NEAR = 0.1;  // largest distance between near points, in posterior standard deviations of a term [-]
   return other.at.size() == point.at.size() &&
          ((point.at - other.at).array().square() * point.information.diagonal().array()).maxCoeff() < NEAR * NEAR;
 }
 
-/// Refines the values by Gauss-Newton steps until the likelihood stays constant, or until the point is near `best`, the
-/// result of another start. `start`: as in looseness(). Each step computes the weights of the rows, the standard
-/// deviations and the priors from the last values (expectation and maximisation). So no single step makes the values
-/// less likely.
+/// Refines the values `at` of the terms by Gauss-Newton steps until the cost stays constant, or until the point is near
+/// `best`, the result of another start. `start`: as in looseness(). Each step computes the weights of the rows, the
+/// standard deviations and the priors from the last values (expectation and maximisation). So no single step makes the
+/// values less likely.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start, const Point& best) const
 {
   constexpr int ROUNDS = 60;
   constexpr int LOOSE_ROUNDS = 5;
   constexpr double NOTHING = 1e-3;
-  constexpr double MOST = 0.8;  // largest assumed ratio of a step to the step before [-]
+  constexpr double MOST = 0.8;  // largest assumed ratio of the length of a step to that of the step before [-]
   Point point;
   point.at = std::move(at);
   point.deviations.resize(rows_.size());
@@ -562,8 +567,8 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
       break;
     }
     cost = point.cost;
-    // Steps shrink by nearly the same ratio from round to round. So every second step is extended to the sum of this
-    // and all later steps.
+    // The steps shrink by nearly the same ratio from round to round. So the function replaces every second step by the
+    // sum of this step and all later steps.
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
     const double size = last_step.dot(weighted);

@@ -14,17 +14,18 @@ namespace hjt
 ///   current = (1 + g + g_i) (predicted + L_i + F_i (friction + rise_i U_i) - friction + (c + c_i) cold
 ///             + l_i |T_i + L_i| + j_i inertia) + o_i
 /// where words are fields of a Row of joint i, T_i is its `torque` and Y_i its `load`. The causes are:
-///   L_i = Y_i . x + jump_i        x: mass and moments of a payload, change of gravity, drag; jump_i: the change to
-///                                 another payload in the legs of state 1
-///   F_i = 1 + f + f_group + f_i   factors on the twin's friction;  c, c_i: colder drives [10 K]
-///   U_i = |T_i + L_i| - |T_i|     change of the load's magnitude by these causes
+///   L_i = Y_i . x + jump_i        x: mass and moments of a payload, change of gravity, drag; jump_i: the effect
+///                                 of another payload in the legs of state 1 than in those of state 0
+///   F_i = 1 + f + f_group + f_i   factors on the twin's friction;  c, c_i: coldness of the drives [10 K]
+///   U_i = |T_i + L_i| - |T_i|     change of the load's magnitude by L_i
 ///   g, g_i gains;  o_i offset;  l_i loss per load;  j_i change of the rotor's inertia, as a share
 ///
-/// Friction, rise and loss have the sign of the motion. Payload, mounting, gain and friction are rarely other than
-/// configured, but then by any amount: these causes have Cauchy priors. The other causes have normal priors. The errors
-/// of the rows have Student's t distribution of 4 degrees of freedom, because contacts cause outliers. All rows of a
-/// joint count as at most INDEPENDENT rows, because errors of a model are no noise. A joint's gain is free only if its
-/// load is at least as large as its friction: with a smaller load gain and friction have the same effect.
+/// Friction, rise and loss have the sign of the motion. Payload, mounting, gain and friction rarely differ from their
+/// configured values, but a difference can have any size. So these causes have Cauchy priors. The other causes have
+/// normal priors. The errors of the rows have Student's t distribution of 4 degrees of freedom, because contacts cause
+/// outliers. All rows of a joint together count as at most INDEPENDENT rows, because errors of the twin are alike in
+/// many rows. The estimator changes a joint's gain only if the joint's load is at least as large as its friction. With
+/// a smaller load, gain and friction have nearly the same effect.
 class ArmEstimator
 {
 public:
@@ -38,7 +39,7 @@ public:
   /// Mean currents of a joint while the joint moves in one direction [A].
   struct Row
   {
-    double time{};  ///< [s]
+    double time{};  ///< time of the first sample in the mean [s]
     std::size_t leg{};
     double current{};
     double predicted{};
@@ -57,9 +58,9 @@ public:
   {
     double value{};
     double half_width{};
-    double of_rows{ HUGE_VAL };  ///< half width of the 95 % interval by the rows alone, without the prior
+    double of_rows{ HUGE_VAL };  ///< half width of the 95 % interval from the rows alone, without the prior
 
-    bool isBeyond(double least) const;  ///< whether the whole interval is farther than `least` from 0
+    bool isBeyond(double least) const;  ///< whether no value of the interval is within `least` of 0
   };
 
   /// A force on the tip that explains the part of a leg's currents that the other causes do not explain.
@@ -90,19 +91,19 @@ public:
   };
 
   /// `gravity`: configured gravity in the frame of the base [m/s^2]. Another mounting changes its direction, not its
-  /// size. `repeats`: standard deviation of each joint's friction when it is sound, as a share [-]. Empty: that of
-  /// joints of one type.
+  /// size. `repeats`: relative standard deviation of the friction of each joint when the joint is sound [-]; empty: the
+  /// standard deviation from joint to joint of one type.
   ArmEstimator(Rows rows, const Eigen::Vector3d& gravity, std::vector<double> repeats = {});
 
-  /// Causes that the estimator considers in addition to a payload.
+  /// Causes that the estimator considers in addition to a payload that differs from the configured one.
   struct Freedom
   {
     bool mounting{};
     bool jump{};  ///< whether the payload may change between legs
     bool drag{};
   };
-  /// Returns the likeliest estimate with one payload. If the payload may change, and some legs have another payload,
-  /// the likeliest estimate with two payloads follows in the list.
+  /// Returns the likeliest estimate with the same payload in all legs. If `may.jump` is true and two groups of legs fit
+  /// different payloads, the likeliest estimate with two payloads is the second in the list.
   std::vector<Estimate> solve(const Freedom& may) const;
 
 private:
@@ -135,6 +136,6 @@ private:
   Eigen::Vector3d gravity_;
   std::vector<double> repeats_;
   std::size_t legs_{};
-  int size_;  // number of all terms
+  int size_;  // number of unknowns of the fit, of the arm and all joints together
 };
 }  // namespace hjt

@@ -22,13 +22,13 @@ constexpr int MAX_FILES = 8;  // largest number of files in a chain in which eac
 constexpr int MAX_DEPTH = 32;
 constexpr std::size_t MAX_VALUES = 100'000;
 
-/// Reads the values of one file.
+/// Reads the values of one YAML file.
 class Reading
 {
 public:
   explicit Reading(std::string file) : file_(std::move(file)) {}
 
-  /// `place` begins an error text: it is the place where another file names this file.
+  /// Returns the values. `place`: the place where another file names this file, as the beginning of an error text.
   ParameterMap read(const std::string& place)
   {
     try
@@ -165,7 +165,7 @@ ParameterMap readLike(const std::string& path, const std::string& place, int fil
   ParameterMap whole = own;
   for (const auto& [key, value] : other)
   {
-    // A section that the file gives replaces the whole section of the other file.
+    // A section in this file replaces the whole section of the same name in the file that `like` names.
     const auto given = own.lower_bound(sectionOf(key));
     if (given == own.end() || sectionOf(given->first) != sectionOf(key))
     {

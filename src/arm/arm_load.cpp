@@ -61,7 +61,7 @@ bool ArmRates::push(const std::vector<MotionRow>& rows) noexcept
   return true;
 }
 
-/// Gives the rows in rows_, with their stamp errors, to the differentiators for the vibration.
+/// Gives rows_, with the errors of their stamps, to fast_.
 void ArmRates::pushFast() noexcept
 {
   const double stamp_error = times_.stampError(rows_);
@@ -72,7 +72,8 @@ void ArmRates::pushFast() noexcept
   }
 }
 
-/// Takes the next sample of every joint. Returns false if the sample of a joint is not ready.
+/// Moves the next sample of every joint from the differentiators to `samples`. Returns false if the sample of a joint
+/// is not ready.
 bool ArmRates::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept
 {
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -125,7 +126,8 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Sets the payload that the arm carries at `time`. Before the first entry of course_ the first payload counts.
+/// Sets the payload that the arm carries at `time`. At times before the first entry of course_ the arm carries the
+/// payload of this entry.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

@@ -21,11 +21,11 @@ namespace hjt
 /// The estimate e of the time between two rows is a least-squares fit over all joints: the mean velocities v times e
 /// should give the changes of angle dq. The interval d of the stamps is one more observation:
 ///   e = (v.dq / ANGLE^2 + d / STAMP^2) / (v.v / ANGLE^2 + 1 / STAMP^2)
-/// If the recorder stamped the rows evenly but took them unevenly, or lost a row, e differs from d. Differences below
-/// SIGNIFICANT are noise, and the class ignores them. The class uses a joint only while the velocities times the
-/// stamped time agree with the changes of angle within the share AGREES, in the mean of the last seconds. So it does
-/// not use a joint whose velocity has the wrong sign or unit. Only the differences between the errors of rows are
-/// known, up to the next gap. Nothing allocates or throws after construction.
+/// If a recorder gave rows even stamps but took the rows at uneven times, or lost a row, e differs from d. Differences
+/// below SIGNIFICANT are noise, and the class ignores them. The class uses a joint only while the velocities times the
+/// stamped time agree with the changes of angle within the share AGREES, in the mean of the last seconds. So the class
+/// does not use a joint whose velocity has the wrong sign or unit. The errors of the rows after a gap have an unknown
+/// constant in common. Nothing allocates or throws after construction.
 class RowTimes
 {
 public:
@@ -36,7 +36,8 @@ public:
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// Returns by how much the stamp of the rows is late [s]. `rows`: one row of each joint, later than the last rows.
+  /// Returns the error of the stamp of `rows`: stamp - estimated time [s]. `rows`: one row of each joint, later than
+  /// the rows of the last call.
   double stampError(const std::vector<MotionRow>& rows) noexcept
   {
     const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
@@ -54,16 +55,18 @@ public:
   }
 
 private:
-  /// Sums of v dq and of v v d of one joint, which forget old rows over MEMORY. Both sums begin at the same value.
+  /// Sums over the rows of one joint: velocity x change of angle, and velocity^2 x interval of the stamps [rad^2/s].
+  /// The sums forget old rows over the time MEMORY. Both begin at START.
   struct Agreement
   {
     double change{ START };
     double expected{ START };
   };
   static constexpr double MEMORY = 10.0;  // time constant with which the sums forget old rows [s]
-  static constexpr double START = 0.25;   // first value of both sums: that of 1 s at 0.5 rad/s [rad^2/s]
+  static constexpr double START = 0.25;   // first value of both sums, as after 1 s at 0.5 rad/s [rad^2/s]
 
-  /// Time from the last rows to `rows` [s]: by the motion if it clearly contradicts the stamps, else by the stamps.
+  /// Time from the rows of the last call to `rows` [s]: that by the motion if it differs from that by the stamps by
+  /// more than SIGNIFICANT, otherwise that by the stamps.
   double interval(const std::vector<MotionRow>& rows) noexcept
   {
     const double by_stamps = rows.front().time - last_.front().time;
@@ -89,7 +92,7 @@ private:
     }
     const double by_motion = weighted / weight;
     const double difference = std::abs(by_motion - by_stamps);
-    constexpr double MOST = 4.0;  // larger factors come from damaged angles
+    constexpr double MOST = 4.0;  // largest ratio of time by motion to time by stamps without damaged angles [-]
     const bool is_usable = by_motion > by_stamps / MOST && by_motion < by_stamps * MOST;
     return is_usable && difference > SIGNIFICANT * by_stamps ? by_motion : by_stamps;
   }
@@ -106,18 +109,18 @@ struct ArmSample
   std::vector<MotionSample> joints;  ///< samples whose rates use the rows within ArmRates::HALF_WIDTH, for the load
   /// Samples whose rates use the rows within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
   std::vector<MotionSample> own;
-  /// Torque of links and payload at the output of each joint, without the motor's own inertia. A positive torque
-  /// resists positive motion [N.m].
+  /// Load at the output of each joint by links and payload, without the motor's own inertia [N.m]. A positive load
+  /// resists positive motion.
   std::vector<double> torques;
 };
 
 /// Speeds and accelerations of all joints of an arm from a stream of rows of their angles, for any type of arm.
 ///
-/// The rates are slopes of parabolas through the angles within HALF_WIDTH of a row. So they need no recorded velocity
-/// and have no phase lag, and a sample is ready at most HALF_WIDTH after its row. Velocities correct the times of the
-/// rows (RowTimes): recorded velocities for load and vibration; if there are none, the slow rates for the vibration
-/// alone, and a sample is ready later by MotionDifferentiator::HALF_WIDTH. Live and offline rates are equal. After
-/// construction nothing throws or allocates.
+/// The rates are slopes of parabolas through the angles within HALF_WIDTH of a row. So the rates need no recorded
+/// velocity and have no phase lag. A sample is ready at most HALF_WIDTH after its row. Recorded velocities correct the
+/// times of the rows (RowTimes) for load and vibration. Without recorded velocities, the rates for the load correct the
+/// times for the vibration alone, and a sample is ready later by MotionDifferentiator::HALF_WIDTH. Rates of a live
+/// stream and of a recording are equal. After construction nothing throws or allocates.
 class ArmRates
 {
 public:
@@ -131,11 +134,11 @@ public:
   void reset() noexcept;
 
   /// Takes one row of each joint, all of one time. Returns false and ignores the rows if they are not later than the
-  /// rows before, or if their values are impossible.
+  /// last rows that were taken, or if a value is impossible.
   bool push(const std::vector<MotionRow>& rows) noexcept;
 
-  /// The next sample that is ready, without torques and vibration; nullptr if none is ready. It is valid until the next
-  /// call. With `at_end` the function also returns samples that wait for later rows.
+  /// The next sample that is ready, without torques and vibration; nullptr if none is ready. The pointer is valid until
+  /// the next call. With `at_end` the function also returns samples that wait for later rows.
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
@@ -179,7 +182,7 @@ private:
 
   UnitLoads links_;
   const PayloadCourse course_;
-  std::size_t carried_{ NONE };  // index of the present payload in course_
+  std::size_t carried_{ NONE };  // index in course_ of the payload that the arm carries now
   std::vector<JointMotion> motion_;
   std::vector<double> fast_torques_;
 };

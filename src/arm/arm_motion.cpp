@@ -23,15 +23,15 @@ constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's
 /// A stroke moves the joint to an angle, relative to the pose in which its check-up begins.
 struct Stroke
 {
-  double angle;  // [deg]
-  double speed;  // [deg/s]
+  double angle;  // angle at the end of the stroke [deg]
+  double speed;  // largest speed [deg/s]
 };
 constexpr std::array<Stroke, 16> STROKES{ {
-    // Slow strokes over the whole range of the load, 42 turns of the motor in each direction.
+    // Slow strokes over the whole range of the joint's load, with 42 turns of the motor in each direction.
     { 75.0, 20.0 },
     { -75.0, 20.0 },
     { 0.0, 20.0 },
-    // Strokes with reversals where the load is near zero.
+    // Strokes that reverse where the joint's load is near zero.
     { 20.0, 60.0 },
     { -20.0, 60.0 },
     { 20.0, 60.0 },
@@ -48,8 +48,7 @@ constexpr std::array<Stroke, 16> STROKES{ {
     { 0.0, 150.0 },
 } };
 
-/// Share of a distance that a move has covered, over time. The speed over time is a trapezoid. With a limit of the jerk
-/// it is the moving mean of this trapezoid over the time in which the acceleration rises.
+/// Share of a distance that a move has covered, over time [-]. The speed over time is that of ArmMove.
 class Profile
 {
 public:
@@ -61,7 +60,8 @@ public:
   {
     if (move.jerk > 0.0)
     {
-      // Without a phase of constant speed the mean goes directly from acceleration to deceleration, in twice the time.
+      // Without a phase of constant speed the acceleration changes directly from its largest to its smallest value.
+      // This change takes twice the time of a change from 0.
       const double once = acceleration_ / move.jerk;
       mean_ = end_ - 2.0 * rise_ >= once ? once : 2.0 * once;
     }
@@ -117,7 +117,7 @@ private:
   double acceleration_;
   double rise_;
   double end_;     // time at which the trapezoid ends [s]
-  double mean_{};  // time over which the moving mean is taken; 0: no mean [s]
+  double mean_{};  // length of the moving mean of the speed; 0: no mean [s]
 };
 
 void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
@@ -269,9 +269,9 @@ void ArmMotion::at(double time, std::vector<JointMotion>& motion) noexcept
 
 std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
 {
-  constexpr double STILL = 1e-3;        // [rad/s]
+  constexpr double STILL = 1e-3;        // largest speed of a joint at rest [rad/s]
   constexpr double ACCELERATION = 2.0;  // mean acceleration of the fastest joint [rad/s^2]
-  constexpr double SHORTEST = 0.2;      // [s]
+  constexpr double SHORTEST = 0.2;      // least duration of the path [s]
   constexpr std::size_t STEPS = 32;
   double fastest = 0.0;
   for (const JointMotion& joint : point.joints)
@@ -286,7 +286,8 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
   std::vector<ArmSetPoint> points(STEPS + 1, point);
   for (std::size_t k = 0; k < STEPS; ++k)
   {
-    // The speed is a cubic of the share s of the time. At s = 0 the joints rest; at s = 1 they move as in `point`.
+    // The speed is a cubic of s, the elapsed share of the path's duration. At s = 0 the joints rest; at s = 1 they move
+    // as in `point`.
     const double s = static_cast<double>(k) / static_cast<double>(STEPS);
     points[k].time = point.time - (1.0 - s) * length;
     for (std::size_t i = 0; i < point.joints.size(); ++i)
@@ -325,7 +326,7 @@ ArmMotion gentleMotion(const ArmDescription& arm)
 {
   constexpr double ACCELERATION = 2.0;                           // [rad/s^2]
   constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // speed of the joint that moves farthest [rad/s]
-  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // way of each joint from the middle pose [rad]
+  constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // distance of each joint from the middle pose [rad]
   constexpr double PERIOD = 0.008;                               // time between set points [s]
   const std::size_t joints = arm.joints.size();
   const bool is_known =

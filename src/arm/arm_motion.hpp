@@ -15,7 +15,7 @@ namespace hjt
 struct ArmSetPoint
 {
   double time{};                    ///< time in the motion [s]
-  std::vector<JointMotion> joints;  ///< motion of all joints
+  std::vector<JointMotion> joints;  ///< angle, speed and acceleration of each joint
 };
 
 /// Source of the accelerations between two set points.
@@ -26,7 +26,8 @@ enum class ArmAccelerations : std::uint8_t
 };
 
 /// A commanded motion through set points. Between two set points the angles follow cubics that have the angles and
-/// speeds of both. Before the first and after the last set point the joints stand still at its angles.
+/// speeds of both set points. Before the first set point, and after the last one, the joints stand still at the angles
+/// of this set point.
 class ArmMotion
 {
 public:
@@ -43,11 +44,12 @@ public:
   std::size_t joints() const noexcept { return points_.front().joints.size(); }
   const std::vector<ArmSetPoint>& points() const noexcept { return points_; }
 
-  /// Computes the motion of each joint at a time [s], fast if times increase. `motion` has an entry for each joint.
+  /// Computes the motion of each joint at a time [s]. A call is fastest if `time` is later than in the call before.
+  /// `motion` has an entry for each joint.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
-  /// In a motion of two set points, the second becomes the first, and the new one the second, which need not be at
-  /// rest.
+  /// Adds a set point to a motion of two set points: the second set point becomes the first, and the new one the
+  /// second. A set point at the time of the second one only replaces the second. The new set point need not be at rest.
   void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
 
   /// Replaces the motion of all joints at the first set point. `joints` has an entry for each joint.
@@ -61,18 +63,18 @@ private:
   std::size_t last_{};  // index of the set point before the time of the last call of at()
 };
 
-/// Set points that lead from rest to `point` (fromRest), or from `point` to rest (toRest), including `point`. If
-/// `point` is at rest, it is the only one.
+/// Set points that lead from rest to `point` (fromRest), or from `point` to rest (toRest), including `point`. If the
+/// joints rest at `point`, `point` is the only set point.
 std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point);
 std::vector<ArmSetPoint> toRest(const ArmSetPoint& point);
 
-/// A gentle motion of all joints that repeats, slow and fast, in both directions. Its middle is the upright pose of the
-/// check-up. An arm without ArmJoint::check_up or without limits stands still at angles of 0. @throws ParameterError if
-/// the motion would exceed a limit.
+/// A gentle motion of all joints that repeats without end, at three speeds, in both directions. The middle pose is that
+/// in which the check-up of the second joint begins. An arm without ArmJoint::check_up or without limits stands still
+/// at angles of 0. @throws ParameterError if the motion would exceed a limit.
 ArmMotion gentleMotion(const ArmDescription& arm);
 
-/// Move of all joints together, as by URScript's movej. The speed over time is a trapezoid. With a limit of the jerk it
-/// is the moving mean of this trapezoid over the time in which the acceleration rises.
+/// Move of all joints together, as by URScript's movej. Without a limit of the jerk the speed over time is a trapezoid.
+/// With a limit the speed is the moving mean of this trapezoid over the time in which the acceleration rises.
 struct ArmMove
 {
   std::vector<double> target;  ///< angles of all joints [rad]
@@ -88,13 +90,13 @@ using ArmPose = std::vector<double>;
 /// A set point and the torques that its motion needs.
 struct ArmInstant : ArmSetPoint
 {
-  std::vector<double> torques;  ///< torque at the output of each joint that makes the motion [N.m]
+  std::vector<double> torques;  ///< load at the output of each joint in this motion [N.m]
 };
 
 /// Moves of a check-up of one joint. The joint moves alone, from ArmJoint::check_up and back to it. Slow strokes over
-/// its whole range show stiffness and friction by load. Strokes where the load goes through zero show clearance and
-/// hysteresis. Fast strokes end the check-up. @throws ParameterError if the arm's file gives no such pose, or no limits
-/// of a joint.
+/// its whole range show stiffness and friction by load. Strokes in which the load goes through zero show clearance and
+/// hysteresis. Fast strokes are the last. @throws ParameterError if the arm's file gives no ArmJoint::check_up, or no
+/// limits of a joint.
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
 /// Samples the moves every `period` [s], with a rest before and after them. @throws ParameterError naming a joint that

@@ -31,7 +31,8 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// Adds a sample without torques, whose currents are efforts. `counts`: whether the fit of the load takes it.
+  /// Adds a sample without torques, whose fields `current` hold efforts. `counts`: whether the fit of the load uses the
+  /// sample.
   void add(const ArmSample& sample, bool counts)
   {
     sample_ = sample;
@@ -99,7 +100,7 @@ private:
 
 using Trials = std::vector<std::unique_ptr<ArmTrial>>;
 
-/// Gives all rows to the trials. The rates of the rows are the same for all trials.
+/// Gives all rows to the trials. Computes the rates of the rows only once, because all trials need the same rates.
 void play(const PlayArmRows& rows, const Trials& trials, std::size_t joints)
 {
   ArmRates rates(joints);
@@ -140,7 +141,7 @@ std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const 
     trials.push_back(std::make_unique<ArmTrial>(candidate, candidate.joints.front().telemetry.effort));
   }
   play(rows, trials, candidates.front().joints.size());
-  Trials others;  // trials with another unit than the configured one
+  Trials others;  // trials of candidates whose likeliest unit is not the configured one
   for (std::size_t i = 0; i < candidates.size() && !unit_is_given; ++i)
   {
     const EffortUnit unit = trials[i]->likeliestUnit();

@@ -15,10 +15,10 @@ namespace hjt
 /// How well an arm explains the currents of a recording.
 struct ArmFit
 {
-  static constexpr double CLEARLY = 15.0;       ///< difference of `cost` from which on an arm is clearly likelier [-]
-  static constexpr double CONTRADICTED = 20.0;  ///< difference of `cost` from which on the given arm is wrong [-]
+  static constexpr double CLEARLY = 15.0;       ///< difference of two costs that makes an arm clearly likelier [-]
+  static constexpr double CONTRADICTED = 20.0;  ///< difference of two costs that makes the given arm wrong [-]
   static constexpr double EXPLAINED = 0.35;  ///< the true arm leaves at most this share of the currents unexplained [-]
-  static constexpr double ENOUGH = 120.0;    ///< duration of the motion that a ranking needs at most [s]
+  static constexpr double ENOUGH = 120.0;    ///< longest motion that a ranking uses [s]
 
   std::string arm;
   EffortUnit unit{};  ///< unit of the efforts that fits best
@@ -48,20 +48,21 @@ using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
 using PlayArmRows = std::function<void(const VisitArmRows&)>;
 
 /// Ranks the candidates by how well they explain the rows, the best first. Each candidate gets the payload, mounting
-/// and friction that fit best, and gains as they differ within a type. All currents may have a common factor if that is
-/// much likelier. With `unit_is_given` the efforts have the configured unit. @throws ParameterError.
+/// and friction that fit best, and gains within the scatter of one type. All currents may have a common factor if the
+/// factor makes the rows much likelier. With `unit_is_given` the efforts have the configured unit. @throws
+/// ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
 /// A function that ranks the arms of these names, the best first.
 using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
-/// Name of the arm that explains the rows so much better than `own` that it contradicts `own`; empty: there is none.
-/// `names` contains `own`. If `own` explains the rows well enough, the function tries no other arm.
+/// Name of the arm that explains the rows better than the arm `own` by more than ArmFit::CONTRADICTED; empty: no arm
+/// does. `names` contains `own`. If no arm could explain the rows so much better, the function ranks no other arm.
 std::string betterArm(const std::string& own, std::vector<std::string> names, const RankArms& rank);
 
-/// The clause "the arm may be a ur5e, which explains ...".
+/// The clause "the arm may be a ur5e, which explains ...", with `other` as the name of the arm.
 std::string otherArmText(const std::string& other);
-/// Gives a misfit that names the arm `other` to each joint whose load may be wrong.
+/// Gives a misfit that names the arm `other` to each joint that has no misfit, or the misfit LOAD_WRONG.
 void nameOtherArm(const std::string& other, std::vector<Misfit>& misfits);
-/// Whether the misfit of a joint may have the reason that the arm is another than the given one.
+/// Whether a joint has no misfit, or the misfit LOAD_WRONG, so that the arm may be another than the given one.
 bool mayBeOtherArm(const std::vector<Misfit>& misfits);
 }  // namespace hjt

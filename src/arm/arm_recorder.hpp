@@ -28,7 +28,7 @@ inline constexpr std::array<ArmQuantity, 10> ARM_QUANTITIES{ {
     { "target_current", "A", "current of the torque that the controller feeds forward", false },
     { "target_moment", "N.m", "torque of the rigid links along the set point", false },
     { "actual_q", "rad", "angle by the encoder at the output", false },
-    { "actual_qd", "rad/s", "speed by the encoder at the motor, over the ratio", false },
+    { "actual_qd", "rad/s", "speed of the joint: speed by the encoder at the motor, divided by the ratio", false },
     { "actual_current", "A", "current of the motor", false },
     { "target_TCP_pose", "m", "position of the tool by the set point, in the frame of the base", true },
     { "actual_TCP_pose", "m", "true position of the tool in the frame of the base", true },
@@ -67,11 +67,11 @@ private:
   MovingArm& arm_;
   ArmDynamics dynamics_;
   std::vector<JointMotion> target_;
-  std::vector<double> inertia_in_load_;  // [kg.m^2]
+  std::vector<double> inertia_in_load_;  // result of takeInertiaInLoad() for each joint [kg.m^2]
   ArmRow row_;
 };
 
-/// Sums of the drives' counters. The number of steps is that of one drive, because the drives step together.
+/// Sum of the counters of all drives. Only the number of steps is that of one drive, because the drives step together.
 TwinCounters countersOf(const ArmTwin& twin);
 
 /// Whether all drives took their last step on a response surface.

@@ -15,16 +15,17 @@ namespace hjt
 {
 namespace
 {
-/// Weights of the last three steps' values in the extrapolation to the next step, by the polynomial's order.
+/// Weights of the values of the last three steps, the newest first, in the extrapolation to the next step [-]. Row k is
+/// for a polynomial of order k.
 constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
   { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
 };
 
-/// Least inertia that the arm shows each drive, over many random poses [kg.m^2].
+/// Least inertia of the arm that each drive moves, over many random poses [kg.m^2].
 std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double>& spline_inertia)
 {
   constexpr int POSES = 500;
-  constexpr double MARGIN = 0.8;  // factor on the least inertia, because other poses may have a smaller one
+  constexpr double MARGIN = 0.8;  // factor on the least inertia of the drawn poses; other poses may have less [-]
   const auto joints = static_cast<Eigen::Index>(spline_inertia.size());
   std::vector<JointMotion> pose(spline_inertia.size());
   std::vector<double> least(spline_inertia.size(), std::numeric_limits<double>::infinity());
@@ -34,7 +35,8 @@ std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double
   {
     for (JointMotion& joint : pose)
     {
-      // The distributions of the standard library give other numbers in each implementation.
+      // The distributions of the standard library give different numbers on different compilers, so the program divides
+      // the generator's numbers itself.
       joint.position = TWO_PI * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max());
     }
     dynamics.massMatrix(pose, mass);
@@ -187,7 +189,7 @@ bool ArmTwin::step(Stamp until) noexcept
   return true;
 }
 
-/// Gives each drive the inertia and the load that the arm has for it at the end of the step.
+/// Gives each drive the inertia 1/W_ii and the load of its joint at the end of the step (comment of the class).
 void ArmTwin::couple() noexcept
 {
   const auto joints = static_cast<Eigen::Index>(drives_.size());

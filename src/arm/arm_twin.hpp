@@ -34,11 +34,11 @@ struct ArmCoupling
 ///   h_i - sum_{k != i} W_ik (tau_k - h_k) / W_ii
 ///
 /// All drives step together. Each step computes h at the predicted instant, and extrapolates tau of the other drives
-/// from the steps before. M changes with the pose alone and is computed rarely. The rotors belong to the drives; the
-/// casings of the motors belong to the links.
+/// from the steps before. M depends only on the pose and is computed at ArmCoupling::mass_rate. The rotors belong to
+/// the drives; the casings of the motors belong to the links.
 ///
-/// A copy is at the same instant, and its later results have the same bits as those of the original. After construction
-/// only a copy throws or allocates unless stated.
+/// A copy is at the same instant as the original. Under the same inputs both give the same results to the last bit.
+/// After construction only a copy throws or allocates unless stated.
 class ArmTwin
 {
 public:
@@ -74,7 +74,7 @@ public:
   /// Sets the payload at the tip, from the next step on.
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// Error of the coupling since reset: energy that the drives delivered less the change of the arm's energy [J]. It
+  /// Error of the coupling since reset: energy that the drives delivered - change of the arm's energy [J]. The error
   /// has no meaning once a wrench or another payload was set.
   double energyResidual() noexcept;
   double deliveredEnergy() const noexcept;  ///< energy that all drives delivered to the links since reset [J]
@@ -91,7 +91,7 @@ private:
   std::vector<double> zero_;           // joint angle - output angle of each drive [rad]
   std::vector<Twin> drives_;
   std::vector<double> spline_inertia_;  // inertia of each circular spline [kg.m^2]
-  std::int64_t mass_steps_;             // number of steps from one mass matrix to the next [-]
+  std::int64_t mass_steps_;             // number of steps from one computation of the mass matrix to the next [-]
   std::int64_t steps_{};
   std::vector<JointMotion> motion_;
   std::vector<JointMotion> next_;  // predicted motion at the end of the step

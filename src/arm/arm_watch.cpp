@@ -65,7 +65,8 @@ bool LoadWatch::isDue() const
                        fit_->moved() >= next_look_;
 }
 
-/// Starts an evaluation of the rows so far in a thread. If no thread can start, a later call makes the evaluation.
+/// Starts a thread that evaluates the rows so far. If no thread can start, the next evaluation is due after 30 s more
+/// of motion.
 void LoadWatch::begin(std::vector<bool> measured)
 {
   looked_at_ = last_time_;
@@ -97,7 +98,8 @@ bool LoadWatch::look(const JudgedJoints& joints)
   return counts && take(found, joints);
 }
 
-/// Takes the result of an evaluation. `found` is empty if another load is on trial.
+/// Takes the result of an evaluation or, while a load is on trial, that of the trial. `found`: load by the evaluation,
+/// not used during a trial. Returns as look().
 bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 {
   const bool was_trying = isTrying();
@@ -124,7 +126,7 @@ bool LoadWatch::take(const FoundLoad& found, const JudgedJoints& joints)
 
 bool ArmWatch::moves(const std::vector<MotionRow>& rows)
 {
-  constexpr double MOVED = 0.01;  // least change of an angle that is a motion, above play and noise [rad]
+  constexpr double MOVED = 0.01;  // least change of an angle that counts as motion; play and noise make less [rad]
   constexpr double STILL = 1.0;   // time after the last change of an angle that still counts as motion [s]
   moved_from_.resize(rows.size(), HUGE_VAL);
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -205,14 +207,14 @@ bool ArmWatch::look()
   }
   if (is_stopped_)
   {
-    answer_ = {};  // drops the result, which is that of rows before the last reset
+    answer_ = {};  // drops the result, because its rows are from before the last reset
     return false;
   }
   other_ = answer_.get();
   is_settled_ = true;
   if (!other_.empty())
   {
-    moved_ = std::max(moved_, 0.0);  // rank again soon: a hand that leads the arm may have caused a wrong result
+    moved_ = std::max(moved_, 0.0);  // rank again soon, because a hand that guides the arm can cause a wrong result
   }
   return true;
 }

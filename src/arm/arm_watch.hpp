@@ -19,11 +19,11 @@
 
 namespace hjt
 {
-/// Finds payload and mounting from an arm's currents while the rows arrive. The class evaluates the rows after every
-/// 30 s of motion. After eight minutes of motion it starts with new rows, and it uses only rows since the last change
-/// of the payload. It tries a found load for 10 s of motion (LoadLaw). If the trial fails, the class looks for no load
-/// during the next eight minutes of motion. An evaluation takes some tenths of a second in a thread of its own. The
-/// class allocates and is not for a real-time loop.
+/// Finds payload and mounting from an arm's currents while the rows arrive. The class evaluates the rows after every 30
+/// s of motion. After eight minutes of motion, or after a change of the load, the class forgets the rows and begins
+/// again. If the payload changes, only the last payload counts. The class tries a found load for 10 s of motion
+/// (LoadLaw). If the trial fails, the class looks for no load during the next eight minutes of motion. An evaluation
+/// takes some tenths of a second in a thread of its own. The class allocates and is not for a real-time loop.
 class LoadWatch
 {
 public:
@@ -32,19 +32,20 @@ public:
   LoadWatch(const ArmDescription& arm, const std::vector<Parameters>& joints, std::vector<LoadFit::Drive> drives);
 
   void add(const ArmSample& sample);
-  /// Forgets the rows, because those of another motion follow. The present load stays.
+  /// Forgets the rows, because rows of another motion follow. The present load stays.
   void reset();
 
   /// Whether look() has work: an evaluation is due, or the result of one is ready.
   bool isDue() const;
   bool isLooking() const { return found_.valid(); }
-  /// Starts an evaluation or takes its result. Call this function if isDue() is true. `joints`: results with the
-  /// present load. Returns true if another load counts from now on.
+  /// Starts an evaluation, or takes the result of the running one. Call this function if isDue() is true. `joints`:
+  /// results with the present load. Returns true if from now on the joints are judged with another load than before.
   bool look(const JudgedJoints& joints);
 
   const AssumedLoad& assumed() const { return law_.counts(); }
   bool isTrying() const { return law_.isTrying(); }
-  /// Why no joint can be judged: the payload changes again and again, or the gain of all joints is not as configured.
+  /// Why no joint can be judged: the payload changes from leg to leg, or the gains of all joints differ from the
+  /// configured ones. Empty: the joints can be judged.
   const Misfit& misfit() const { return misfit_; }
   /// Friction of each joint by the last evaluation; empty before the first evaluation.
   const std::vector<FittedFriction>& frictions() const { return frictions_; }
@@ -67,24 +68,26 @@ private:
   std::vector<MotionDriven> twins_;
   std::optional<LoadFit> fit_;
   std::vector<MotionSample> samples_;
-  double last_time_{ -HUGE_VAL };  // time of the last sample that counted [s]
+  double last_time_{ -HUGE_VAL };  // time of the last sample that the fit used [s]
   double next_look_{ LoadFit::FIRST_LOOK };
   bool has_looked_{};
   Misfit misfit_;
   std::vector<FittedFriction> frictions_;
   bool is_new_{ true };           // true: the next row is the first one after a gap
   double looked_at_{};            // time of the last row of the last evaluation [s]
-  bool is_of_others_{};           // true: the running evaluation is that of rows before the last reset
+  bool is_of_others_{};           // true: the rows of the running evaluation are from before the last reset
   std::future<FoundLoad> found_;  // last member: its destructor waits for the thread, which uses other members
 };
 
-/// Finds out, while rows arrive, whether they belong to another arm than the given one (rankArms). The class ranks the
-/// arms after 30, 60 and 120 s of motion. It begins again after eight minutes, or at once if the rows may be of another
-/// arm. A ranking takes some seconds in a thread of its own. The class keeps only rows with motion.
+/// Finds out, while rows arrive, whether the rows belong to another arm than the given one (rankArms). The class ranks
+/// the arms after 30, 60 and 120 s of motion. After eight more minutes of motion the class begins again with new rows,
+/// or at once if a ranking shows another arm. A ranking takes some seconds in a thread of its own. The class keeps only
+/// rows with motion.
 class ArmWatch
 {
 public:
-  /// A function that makes the arms to rank, `own` among them. It runs in the thread that ranks them.
+  /// A function that makes the arms to rank, including the given arm. The thread that ranks the arms calls this
+  /// function.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
   /// `own`: name of the given arm. `unit_is_given`: whether the efforts certainly have the configured unit.
@@ -96,15 +99,16 @@ public:
   ArmWatch(const ArmWatch&) = delete;
   ArmWatch& operator=(const ArmWatch&) = delete;
 
-  /// Adds rows of all joints at one time. The member `current` is the received effort in its own unit.
+  /// Adds one row of each joint, all of the same time. Their field `current` holds the effort as received.
   void add(const std::vector<MotionRow>& rows);
-  /// Forgets all rows and their results, because rows of another motion follow.
+  /// Forgets all rows and the results of their rankings, because rows of another motion follow.
   void reset();
 
-  /// Whether the search for a likelier arm has ended since the last call. @throws any exception of MakeCandidates.
+  /// Takes the result of a ranking. Returns whether a ranking has ended since the last call. @throws any exception of
+  /// MakeCandidates.
   bool look();
 
-  /// The arm that is clearly likelier than the given one; empty if none is known.
+  /// Name of the arm that is clearly likelier than the given one; empty: no such arm is known.
   const std::string& other() const { return other_; }
   /// Whether a ranking of the present rows has ended.
   bool isSettled() const { return is_settled_; }
@@ -121,12 +125,12 @@ private:
   std::string other_;
   bool is_settled_{};
   std::vector<std::vector<MotionRow>> rows_;
-  std::vector<double> moved_from_;  // angles where the joints last stood [rad]
+  std::vector<double> moved_from_;  // angle of each joint at its last change that counted as motion [rad]
   double last_moved_{ -HUGE_VAL };  // time of the last row with motion [s]
   double last_time_{ -HUGE_VAL };   // time of the last row that was kept [s]
-  double moved_{};                  // time of motion since the last start [s]
+  double moved_{};                  // time of motion since the class last began [s]
   double next_look_{ LoadFit::FIRST_LOOK };
-  std::atomic<bool> is_stopped_{ false };  // true: the result of the running ranking does not count
+  std::atomic<bool> is_stopped_{ false };  // true: the rows of the running ranking are from before the last reset
   std::future<std::string> answer_;        // last member: its destructor waits for the thread, which uses other members
 };
 }  // namespace hjt

@@ -14,7 +14,8 @@ namespace hjt
 {
 namespace
 {
-/// The found load, compared with the configured one of the arm's file; none if both agree.
+/// The found payload or mounting with the configured one of the arm's file, if found and configured differ; none if
+/// they agree. `counts`: the present payload or mounting.
 template <class Found>
 std::optional<Found> named(Found found, const std::optional<Found>& counts)
 {
@@ -22,7 +23,7 @@ std::optional<Found> named(Found found, const std::optional<Found>& counts)
   return found.differs() ? std::make_optional(found) : std::nullopt;
 }
 
-/// Whether all misfits of the joints can come from a wrong load, so that the right load may end them.
+/// Whether a wrong load can cause all misfits of the joints with a measured current.
 bool mayBeOther(const JudgedJoints& joints)
 {
   for (std::size_t i = 0; i < joints.misfits.size(); ++i)
@@ -113,14 +114,14 @@ double IdentifiedMounting::tilt() const
 bool IdentifiedMounting::differs() const
 {
   constexpr double LEAST = 4.0 * DEGREE;  // least tilt that counts; errors of the links' masses cause less [rad]
-  constexpr double KNOWN = 3.0;           // least tilt that counts, in half widths; a hand on the arm causes less [-]
-  constexpr double SIZE = 1.35;           // largest factor on gravity that a payload or errors of gains cause [-]
+  constexpr double KNOWN = 3.0;           // least tilt over its half width; a hand on the arm causes less [-]
+  constexpr double SIZE = 1.35;           // largest found over configured gravity by a payload or wrong gains [-]
   return tilt() > LEAST && tilt() > KNOWN * half_width && size > 1.0 / SIZE && size < SIZE;
 }
 
 std::string IdentifiedMounting::text() const
 {
-  constexpr double LEAST = 1.0;  // least half width that is printed [deg]
+  constexpr double LEAST = 1.0;  // least half width in the text [deg]
   const auto part = [](double value) { return fixedText(std::abs(value) < 0.05 ? 0.0 : value, 1); };  // no "-0.0"
   return "the mounting differs from the configured one: gravity is tilted by " + fixedText(tilt() / DEGREE, 0) +
          " +- " + fixedText(std::max(half_width / DEGREE, LEAST), 0) + " deg (95 %). Set gravity: [" +
@@ -249,7 +250,8 @@ bool LoadLaw::take(const FoundLoad& found, const JudgedJoints& joints)
 std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJoints& joints) const
 {
   const bool is_mounted = found.mounting.differs();
-  // A mass below zero is no payload. A smaller mass than the found one before means that somebody put the payload down.
+  // A mass below zero is no payload. If the present load has a found payload and the mass has become smaller, somebody
+  // put this payload down.
   const bool is_put_down = counts_.payload && counts_.payload->isCarried();
   const bool changes = !found.changes.empty() || !std::isinf(found.since);
   const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));

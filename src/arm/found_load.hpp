@@ -22,13 +22,14 @@ struct IdentifiedPayload
   double mass_half_width{};                   ///< half width of the mass's 95 % interval [kg]
   std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< half widths of the moments' 95 % intervals [kg.m]
-  double least_claim{};  ///< largest mass that arms with links of this mass show without a payload [kg]
+  double least_claim{};                       ///< mass that an arm with these links can show without a payload [kg]
 
-  /// Whether the configured mass is outside the interval of `mass` and differs from `mass` by more than `least_claim`.
+  /// Whether `mass` differs from the configured mass by more than its half width and by more than `least_claim`.
   bool differs() const;
   /// Whether the 95 % interval of the mass lies above zero.
   bool isCarried() const { return mass > mass_half_width; }
-  /// Whether the payload differs from the configured one, and is above zero, or zero although one is configured.
+  /// Whether differs() is true and the currents show either a mass above zero, or no mass although a payload is
+  /// configured.
   bool isOther() const;
   /// The payload with its centre of mass; a payload without mass if isCarried() is false.
   Payload payload() const;
@@ -36,7 +37,7 @@ struct IdentifiedPayload
   std::string text() const;
 };
 
-/// The mounting of an arm by its currents: the direction of gravity that they show, and the configured one.
+/// The mounting of an arm: the direction of gravity that the arm's currents show, and the configured direction.
 struct IdentifiedMounting
 {
   std::array<double, 3> configured{};  ///< configured gravity in the frame of the base [m/s^2]
@@ -45,8 +46,8 @@ struct IdentifiedMounting
   double size{ 1.0 };                  ///< size of the gravity that fits best, over the configured size [-]
 
   double tilt() const;  ///< angle between configured and found gravity [rad]
-  /// Whether the found direction is significantly far from the configured one, and farther than arms with the right
-  /// mounting show, and the found size is that of gravity.
+  /// Whether the tilt is significant and larger than in arms whose mounting is configured right, while the found size
+  /// is within the errors of the configured size.
   bool differs() const;
   /// The clause "the mounting differs from the configured one: gravity is tilted by ...".
   std::string text() const;
@@ -58,17 +59,17 @@ struct FoundDrag
   double force{};       ///< size of the force [N]
   double half_width{};  ///< half width of the force's 95 % interval [N]
 
-  /// Whether the interval of the force lies above the drag that sound arms show.
+  /// Whether the whole interval of the force lies above 3 N.
   bool exists() const;
   /// The clause "the currents show a force of ... on the tool against its motion: ...".
   std::string text() const;
 };
 
-/// A time from which on the arm carries the found payload, or from which on it does not.
+/// A change of the payload between the found payload and another one.
 struct PayloadChange
 {
-  double time{};  ///< [s]
-  bool is_found{};
+  double time{};    ///< time of the change [s]
+  bool is_found{};  ///< whether the arm carries the found payload from `time` on
 };
 
 /// The load of an arm, as its currents show it.
@@ -76,19 +77,19 @@ struct FoundLoad
 {
   IdentifiedPayload payload;
   IdentifiedMounting mounting;
-  IdentifiedPayload otherwise{};         ///< payload of the legs in which the arm does not carry `payload`
+  IdentifiedPayload otherwise{};         ///< payload in the legs in which the arm does not carry `payload`
   std::vector<PayloadChange> changes{};  ///< changes in the order of time, the first one at the first row; empty: none
-  double since{ -HUGE_VAL };             ///< time of the first row by which the load was found [s]
+  double since{ -HUGE_VAL };             ///< time from which on the arm carries the payload; -infinity: in all rows [s]
   FoundDrag drag{};
   std::vector<FittedFriction> frictions{};  ///< friction of each joint
 
-  double gain{};             ///< common factor of all currents that load and friction do not explain, minus 1 [-]
+  double gain{};             ///< factor of all currents that load and friction do not explain - 1 [-]
   double gain_half_width{};  ///< half width of the gain's 95 % interval [-]
 
   /// Says why no joint can be judged: the currents of all joints differ from the expected currents by a factor that
   /// gains of one type do not have. Returns no misfit if there is no such factor.
   Misfit misfit() const;
-  /// This load with the last payload alone, and the time from which on the arm carries it.
+  /// This load with only the payload after the last change. `since` is the time of that change.
   FoundLoad last() const;
 };
 
@@ -98,7 +99,7 @@ struct AssumedLoad
   std::optional<IdentifiedPayload> payload;
   std::optional<IdentifiedMounting> mounting;
   std::optional<FoundDrag> drag;
-  std::optional<IdentifiedPayload> otherwise;  ///< payload of the times without `payload`; none: the configured one
+  std::optional<IdentifiedPayload> otherwise;  ///< payload at the times without `payload`; none: the configured payload
   std::vector<PayloadChange> changes{};        ///< changes between `payload` and `otherwise`, as in FoundLoad
   double since{ -HUGE_VAL };                   ///< time from which on the arm carries the payload [s]
 
@@ -113,11 +114,12 @@ struct AssumedLoad
 struct JudgedJoints
 {
   JudgedJoints() = default;
-  /// `fit`: of the rows; `misfits`: those with which the frictions were measured; `tolerance`: as in commonFriction().
+  /// `fit`: fit of the joints' rows. `misfits` and `frictions`: misfit and friction of each joint. `tolerance`: as in
+  /// commonFriction().
   JudgedJoints(const RecordingFit& fit, std::vector<Misfit> misfits, std::vector<MeasuredFriction> frictions,
                double tolerance);
 
-  std::vector<Misfit> misfits;  ///< misfit of each joint: its own, or that of all joints
+  std::vector<Misfit> misfits;  ///< misfit of each joint: that of the joint, or that of all joints
   std::vector<MeasuredFriction> frictions;
   std::vector<bool> measured;  ///< false: the joint has no measured current, so it cannot check the load
   ArmFriction common;
@@ -127,13 +129,14 @@ struct JudgedJoints
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// Rules by which another load replaces the configured one, for recordings and live telemetry alike. The class tries a
-/// load that the currents show: a mounting, a drag, or a payload. It tries a payload only if all misfits of the joints
-/// can come from a wrong load. The new load stays if no joint has a misfit with it; otherwise the load before returns.
+/// load that the currents show: a mounting, a drag, or a payload. A payload is tried only if a wrong load can cause all
+/// misfits of the joints. The new load stays if no joint with a measured current has a misfit under this load.
+/// Otherwise the previous load returns.
 class LoadLaw
 {
 public:
-  /// `found` and `joints`: results with the present load. If a load is on trial, only `joints` counts. Returns true if
-  /// another load counts from now on.
+  /// `found` and `joints`: results with the present load. If a load is on trial, the function uses only `joints`.
+  /// Returns true if counts() is another load than before.
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }

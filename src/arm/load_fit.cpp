@@ -14,16 +14,17 @@ namespace hjt
 {
 namespace
 {
-// How much rarer another mounting, a changing payload or a drag is, as a logarithm [-]. Recordings of a UR5 and a UR10e
-// with a constant payload show up to 8 for a changing payload.
+// Cost of a mounting that is not the configured one, of a changing payload, or of a drag [-]: natural logarithm of how
+// rare it is. In recordings of a UR5 and a UR10e with a constant payload, a changing payload lowers the other cost by
+// up to 8.
 constexpr double OTHER_CAUSE = 10.0;
-constexpr double TOLD = 1.0;    // largest half width, by the rows alone, of a known friction [-]
-constexpr double FLOOR = 0.02;  // share of the currents that no twin of a real arm explains [-]
+constexpr double TOLD = 1.0;    // largest half width by the rows alone with which a friction factor is known [-]
+constexpr double FLOOR = 0.02;  // share of the currents of a real arm that no twin explains [-]
 
-/// Cost of a fit that leaves a share of the currents unexplained.
+/// Cost of a fit that leaves the share `left` of the currents unexplained [-].
 double misfitCost(double left)
 {
-  constexpr double COUNTED = 60.0;  // number of independent rows; errors of a model persist from row to row
+  constexpr double COUNTED = 60.0;  // assumed number of independent rows; the error of a twin persists from row to row
   return COUNTED * std::log(std::hypot(left, FLOOR));
 }
 FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
@@ -31,10 +32,10 @@ FoundDrag dragOf(const ArmEstimator::Estimate& estimate)
   return { estimate.drag.value, estimate.drag.half_width };
 }
 
-/// Legs in which something pushes the tip; empty if there are none. A force across gravity that is far larger than in
-/// most legs shows a push, because no payload has such a force. If one leg has a push, a large force along gravity in
-/// another leg is a push too. In simulated days without a push legs show up to 12 N, most of them 1 N. Legs with a push
-/// of 60 N show 16 to 79 N.
+/// Whether something pushes the tip in each leg; empty: in no leg. A leg shows a push if its force across gravity is
+/// far larger than that of most legs, because a payload has no force across gravity. If one leg shows a push, large
+/// forces along gravity in the other legs count as pushes too. The force across gravity is up to 12 N, mostly 1 N, in
+/// the legs of simulated days without a push, and 16 to 79 N in legs with a push of 60 N.
 std::vector<bool> pushedLegs(const std::vector<ArmEstimator::Push>& pushes)
 {
   constexpr double LEAST = 10.0;  // least force that counts as a push [N]
@@ -84,7 +85,7 @@ LoadFit::LoadFit(const ArmDescription& arm, const std::vector<Drive>& drives)
   }
 }
 
-/// Begins a new leg when all joints stand still, and after 5 s at the latest.
+/// Begins a new leg when all joints stand still, or when the present leg has lasted 5 s.
 void LoadFit::cutLegs(double time, double speed)
 {
   constexpr double STOP = 0.2;  // time at rest that ends a leg [s]
@@ -130,7 +131,8 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
-/// Multiples of the golden ratio spread the drawn rows evenly, also over a motion that repeats.
+/// The function compares the fraction of a multiple of the golden ratio with `share`, because these fractions are
+/// spread evenly.
 bool LoadFit::isDrawn(std::size_t number, double share)
 {
   constexpr double GOLDEN = 0.6180339887498949;
@@ -141,7 +143,7 @@ bool LoadFit::isDrawn(std::size_t number, double share)
 /// Removes half of the rows if a joint has more than ENOUGH rows.
 void LoadFit::thin()
 {
-  constexpr std::size_t ENOUGH = 6000;  // number of rows of a joint in ten minutes
+  constexpr std::size_t ENOUGH = 6000;  // largest number of rows of a joint; ten minutes of motion give as many
   if (std::all_of(rows_.begin(), rows_.end(), [&](const auto& joint) { return joint.size() <= ENOUGH; }))
   {
     return;
@@ -163,12 +165,12 @@ void LoadFit::thin()
   share_ *= 0.5;
 }
 
-/// Adds a sample to the open row of a joint. `torques`: torques of unit loads at this joint (UnitLoads).
+/// Adds a sample to the open row of joint `number`. `torques`: torques at this joint by unit loads (UnitLoads).
 void LoadFit::addTo(std::size_t number, const MotionSample& sample, const MotionDriven& twin,
                     const UnitLoads::Torques& torques)
 {
-  constexpr double COLDER = 10.0;     // difference of temperature that ArmEstimator::Row::cold stands for [K]
-  constexpr double LEAST_LOAD = 0.1;  // [N.m]
+  constexpr double COLDER = 10.0;     // by how much the drive of ArmEstimator::Row::cold is colder [K]
+  constexpr double LEAST_LOAD = 0.1;  // least change of the load for the slope `rise` [N.m]
   Joint& joint = joints_[number];
   const double gain = joint.drive.gain;
   const double own = joint.drive.friction;
@@ -184,7 +186,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
   joint.weights += torques[0] * torques[0];
   if (!isDrawn(blocks_[number], share_))
   {
-    return;  // close() will drop this block
+    return;  // close() drops this block
   }
   const double of_mass = std::max(std::abs(torques[0]), LEAST_LOAD);
   const double most = std::abs(sample.load) + of_mass;
@@ -239,7 +241,8 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const TwinOf& twin)
   thin();
 }
 
-/// Rows of the joints that count: at most `most` rows of each joint, and no rows of pushed legs.
+/// Rows of the joints for which `counts` is true, without the rows of pushed legs: about `most` rows of each joint,
+/// evenly drawn.
 ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most) const
 {
   ArmEstimator::Rows rows(rows_.size());
@@ -257,7 +260,7 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   return rows;
 }
 
-/// Mass at the tip with the same effect as 2 % of the links' masses, on the joint that the tip loads most [kg].
+/// Mass at the tip that loads the joint which the tip loads most as much as 2 % of the arm's masses do [kg].
 double LoadFit::ofLinks(const std::vector<bool>& counts) const
 {
   constexpr double LINKS_SHARE = 0.02;
@@ -277,7 +280,7 @@ double LoadFit::ofLinks(const std::vector<bool>& counts) const
 IdentifiedPayload LoadFit::payloadOf(const ArmEstimator::Carried& beside, const ArmEstimator::Carried& half_width,
                                      double of_links) const
 {
-  constexpr double UNLOADED = 0.05;  // share of the links' mass: sound UR5 without a payload show up to 0.8 kg
+  constexpr double UNLOADED = 0.05;  // share of the links' mass; UR5 without a payload show up to 0.8 kg
   IdentifiedPayload found;
   found.configured = payload_;
   found.mass = payload_.mass + beside[0];
@@ -296,7 +299,7 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
 {
   const Eigen::Vector3d total = gravity_ + estimate.gravity;
   const Eigen::Vector3d direction = total / std::max(total.norm(), 1e-6);
-  // Only the part of the half widths across the direction of gravity changes this direction.
+  // Only errors of the gravity vector across its direction change this direction.
   const Eigen::Array3d across = (1.0 - direction.array().square()).max(0.0);
   IdentifiedMounting found;
   Eigen::Map<Eigen::Vector3d>(found.configured.data()) = gravity_;
@@ -307,7 +310,8 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
   return found;
 }
 
-/// Standard deviation of each joint's friction when it is sound, as ArmEstimator expects it.
+/// Argument `repeats` of ArmEstimator(): relative standard deviation of the friction of each joint when the joint is
+/// sound [-].
 std::vector<double> LoadFit::repeats() const
 {
   std::vector<double> repeats;
@@ -336,10 +340,11 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
   return pushed_.empty() ? all : likeliest(counts);
 }
 
-/// Hypotheses that may explain the currents: first the likeliest one, then all that are not clearly less likely.
+/// Hypotheses that may explain the currents: first the likeliest one, then all others whose cost is larger by at most
+/// OTHER_CAUSE.
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
-  constexpr double LEAST_JUMP = 0.1;       // least change of the mass; rising friction has the effect of less [kg]
+  constexpr double LEAST_JUMP = 0.1;       // least change of the mass; rising friction looks like less [kg]
   constexpr std::size_t MOST_ROWS = 1500;  // largest number of rows of each joint
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_, repeats());
   std::vector<Hypothesis> all;
@@ -369,8 +374,10 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
   return hypotheses(counts).front().found;
 }
 
-/// Friction of each joint by all hypotheses. The factor is that of the joint alone or that with common factors,
-/// whichever is nearer to 1. With another mounting it is unknown, because the twins' friction belongs to a wrong load.
+/// Friction of each joint. The likeliest hypothesis gives the friction factor: that of the joint alone, or that with
+/// the common factors, whichever is nearer to 1. The interval spans the intervals of all hypotheses. If the likeliest
+/// hypothesis has another mounting than the configured one, the friction is unknown, because the twins' friction is
+/// that under a wrong load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());
@@ -437,7 +444,8 @@ FoundLoad LoadFit::solve(const std::vector<bool>& counts)
   {
     return found;
   }
-  // The difference of one payload from the configured one is an error of the links, which the other payload has too.
+  // A payload of state 0 that agrees with the configured one differs from it by errors of the links' masses. The
+  // payload of state 1 has the same errors, so the function subtracts them.
   found.otherwise = found.payload;
   const bool is_known = !found.otherwise.differs();
   const ArmEstimator::Carried other =
@@ -466,8 +474,8 @@ double LoadFit::leastCost()
 LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
 {
   constexpr std::size_t MOST_ROWS = 400;  // largest number of rows of each joint
-  constexpr double OTHER_SIZE = 20.0;     // how much rarer another factor of all currents is, as a logarithm [-]
-  constexpr double CLEAR = 0.3;    // least logarithm of a common factor that counts; payloads and gains cause less [-]
+  constexpr double OTHER_SIZE = 20.0;     // cost of a common factor of all currents other than 1 [-]
+  constexpr double CLEAR = 0.3;           // least logarithm of a common factor that payloads and gains do not cause [-]
   constexpr double NO_MASS = 0.5;  // standard deviation of masses below zero, by errors of the links' masses [kg]
   const ArmEstimator estimator(rowsOf(counts, MOST_ROWS), gravity_);
   Fit best;
@@ -480,7 +488,7 @@ LoadFit::Fit LoadFit::explained(const std::vector<bool>& counts)
   {
     if (is_mounted && best.cost <= leastCost() + OTHER_CAUSE)
     {
-      break;  // no mounting can be likelier
+      break;  // no other mounting can be likelier
     }
     const ArmEstimator::Estimate found = likelier(is_mounted);
     const double below_zero = std::min(payload_.mass + found.payload[0], 0.0);

@@ -18,27 +18,27 @@
 namespace hjt
 {
 /// Finds payload, mounting and drag of an arm from the currents of its moving joints (ArmEstimator). A row of the fit
-/// is the mean over 0.1 s of the motion of one joint in one direction with fully built-up friction. The class keeps at
-/// most enough rows of a long recording, evenly over its time. The payload may change between legs. The interval of a
-/// mass adds 2 % of the links' own masses to the interval of the fit.
+/// is the mean over 0.1 s in which one joint moves in one direction with fully built-up friction. Of a long recording
+/// the class keeps a limited number of rows, evenly spread over the time. The payload may change between legs. The
+/// interval of a mass contains, beside the errors of the fit, an error of 2 % of the links' masses.
 class LoadFit
 {
 public:
   static constexpr double PERIOD = 0.02;      ///< least time between two rows that count [s]
   static constexpr double FIRST_LOOK = 30.0;  ///< time of motion before the first fit of live rows [s]
-  static constexpr double LAST_LOOK = 480.0;  ///< time of motion after which the fit of live rows begins again [s]
+  static constexpr double LAST_LOOK = 480.0;  ///< time of motion after which a fit of live rows begins anew [s]
 
-  /// What the fit knows of a joint's drive.
+  /// Values of a joint's drive that the fit needs.
   struct Drive
   {
     explicit Drive(const Parameters& parameters);
-    /// If `known`, the expected friction is that of this joint when it was sound: the points `friction` over the speed.
-    /// Without points the expected friction is that of the twin.
+    /// `known`: whether the friction of this joint when it was sound is known. `friction`: this friction over the
+    /// speed. Without points the expected friction is that of the twin.
     void setOwn(bool known, const std::vector<FrictionPoint>& friction);
 
     double gain;             ///< torque at the joint per current of the motor [N.m/A]
     double rotor;            ///< inertia of the rotor, seen from the joint [kg.m^2]
-    double temperature;      ///< temperature for samples without a temperature [degC]
+    double temperature;      ///< assumed temperature for samples without a measured temperature [degC]
     bool is_own{};           ///< whether the friction of this joint when it was sound is known
     double friction{ 1.0 };  ///< friction of the joint when it was sound, over the twin's friction [-]
   };
@@ -51,45 +51,47 @@ public:
 
   /// A function that returns the twin of a joint by the joint's number.
   using TwinOf = std::function<const MotionDriven&(std::size_t joint)>;
-  /// Adds the samples of all joints at one time. The twins must have made their step to this time before.
+  /// Adds the samples of all joints at one time. Call this function after MotionDriven::move() and bear() of all twins
+  /// with these samples.
   void add(const std::vector<MotionSample>& samples, const TwinOf& twin);
 
-  /// The load of the arm by the joints that count, those with a measured current.
+  /// Load of the arm by the joints for which `counts` is true. Only joints with a measured current can count.
   FoundLoad solve(const std::vector<bool>& counts);
-  /// The likeliest estimate of all causes, by the joints that count.
+  /// The likeliest estimate of all causes, by the joints for which `counts` is true.
   ArmEstimator::Estimate estimate(const std::vector<bool>& counts);
 
   /// How well the best causes explain the currents.
   struct Fit
   {
-    double size{ 1.0 };  ///< common factor of all currents; 1 if gains of one type can have it [-]
+    double size{ 1.0 };  ///< common factor of all currents; 1 if it is within the scatter of one type [-]
     double left{ 1.0 };  ///< share of the currents that the causes do not explain, rms [-]
     double cost{};       ///< negative logarithm of a likelihood that allows for errors of the models [-]
   };
-  /// How well the arm explains the currents of the joints that count, with the best payload and the best mounting.
+  /// How well the arm explains the currents of the joints for which `counts` is true, with the best payload and
+  /// mounting.
   Fit explained(const std::vector<bool>& counts);
-  /// The least cost that any arm can have: its causes are not rare and explain all currents.
+  /// The least Fit::cost that any arm can have: that of usual causes which explain all currents.
   static double leastCost();
-  /// Whether row `number` belongs to the `share` of all rows that is drawn. The draw is even over all rows, also of a
-  /// motion that repeats. The rows of a smaller share also belong to any larger share.
+  /// Whether row `number` is among the drawn rows, which are the `share` [-] of all rows. The drawn rows are spread
+  /// evenly, also over a motion that repeats. The rows of a smaller share also belong to any larger share.
   static bool isDrawn(std::size_t number, double share);
   double moved() const { return moved_; }  ///< time in which at least one joint moved [s]
 
 private:
-  static constexpr double BLOCK = 0.1;  ///< time over which the fit averages a row [s]
+  static constexpr double BLOCK = 0.1;  ///< time over which the fit averages samples to a row [s]
 
   struct Open
   {
     ArmEstimator::Row sum;
     std::size_t count{};
-    double begin{};     // time of the first row [s]
-    double velocity{};  // [rad/s]
+    double begin{};     // time of the first sample [s]
+    double velocity{};  // velocity of the first sample [rad/s]
   };
   struct Joint
   {
     Drive drive;
-    double loads{};    // sum of the squares of the joint's loads [(N.m)^2]
-    double weights{};  // sum of the squares of the loads by 1 kg at the tip [(N.m)^2]
+    double loads{};    // sum of the squares of the joint's load in all samples [(N.m)^2]
+    double weights{};  // sum of the squares of the load by 1 kg at the tip [(N.m/kg)^2]
     Open open{};
   };
 
@@ -98,7 +100,7 @@ private:
   {
     ArmEstimator::Estimate found;
     ArmEstimator::Freedom may;
-    double cost{};  ///< cost of the estimate, plus the cost of its rare causes [-]
+    double cost{};  ///< cost of the estimate, plus OTHER_CAUSE for each rare cause [-]
   };
 
   std::vector<Hypothesis> hypotheses(const std::vector<bool>& counts);
@@ -125,11 +127,11 @@ private:
   std::vector<Joint> joints_;
   ArmEstimator::Rows rows_;
   std::vector<double> legs_;  // time at which each leg begins [s]
-  std::vector<bool> pushed_;  // true: this leg does not count, because something pushes the arm; empty: no such leg
+  std::vector<bool> pushed_;  // true: something pushes the arm in this leg, so it does not count; empty: none
   double still_{};            // time for which all joints have stood still [s]
   double moved_{};            // time in which at least one joint moved [s]
   double last_time_{};
-  double share_{ 1.0 };  // share of the blocks that the fit keeps [-]
+  double share_{ 1.0 };  // share of all blocks of length BLOCK that the fit keeps [-]
   std::vector<std::size_t> blocks_;
 };
 }  // namespace hjt

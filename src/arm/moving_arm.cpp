@@ -31,7 +31,8 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
   return gains;
 }
 
-/// The drives, with onsets of faults that count from the beginning of the motion.
+/// The parameters of the drives, with `settling` [s] added to the onsets of faults, so that onsets count from the
+/// beginning of the motion.
 std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
   constexpr double LATEST_ONSET = 1e9;  // largest onset that a drive accepts [s]
@@ -93,7 +94,7 @@ bool MovingArm::step(Stamp until) noexcept
   return true;
 }
 
-/// If the controller acts at the present instant, commands the torques from then on.
+/// If a period of the controller begins at the present instant, commands the torques from this instant on.
 void MovingArm::control() noexcept
 {
   if (!controller_.isDue(twin_))
@@ -116,7 +117,7 @@ void MovingArm::control() noexcept
   }
 }
 
-/// Makes a protective stop if a joint is too far from its set point or too fast.
+/// Makes a protective stop if a joint is beyond STOP_DEVIATION or STOP_SPEED.
 void MovingArm::watch() noexcept
 {
   for (std::size_t i = 0; i < twin_.joints() && !stop_; ++i)
@@ -173,7 +174,7 @@ void MovingArm::follow(ArmMotion& motion) noexcept
   std::swap(commanded_, motion);
   is_commanded_ = true;
   is_held_ = false;
-  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // the motion waits for the release of the brakes
+  command_begin_ = std::max(twin_.stamp(), motion_begin_);  // the motion waits until the brakes are released
 }
 
 void MovingArm::setPayload(const Payload& payload) noexcept

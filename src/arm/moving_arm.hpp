@@ -14,7 +14,7 @@ namespace hjt
 struct JointReading
 {
   double position{};  ///< angle by the encoder at the output [rad]
-  double velocity{};  ///< speed by the motor's encoder over the ratio, from which `current` was computed [rad/s]
+  double velocity{};  ///< speed by the motor's encoder / ratio, from which the controller computed the torque [rad/s]
   double current{};   ///< current of the motor [A]
 };
 
@@ -26,13 +26,13 @@ struct ProtectiveStop
   const char* reason{};  ///< reason in words, as in "off its set point"
 };
 
-/// A twin of an arm that follows set points under its controller. After a reset brakes hold the arm for half of the
-/// settling time, and the controller holds it for the other half. Then the motion begins. If the first set point is not
-/// at rest, the arm accelerates to it in a lead-in before the motion.
+/// A twin of an arm that follows set points under its controller. After a reset the brakes hold the arm for half of the
+/// settling time, and the controller holds the arm for the other half. Then the motion begins. If the joints move at
+/// the first set point, the arm accelerates from rest to this set point in a lead-in before the motion.
 ///
-/// If a joint is STOP_DEVIATION away from its set point, or faster than STOP_SPEED times its limit, the controller
-/// makes a protective stop: the motors have no torque, and the brakes hold the arm until it is unlocked or reset. Both
-/// bounds are assumptions, because the maker gives none.
+/// If a joint is more than STOP_DEVIATION away from its set point, or faster than STOP_SPEED times its speed limit, the
+/// controller makes a protective stop: the motors have no torque, and the brakes hold the arm until unlock() or
+/// reset(). STOP_DEVIATION and STOP_SPEED are assumptions, because the maker publishes no values.
 ///
 /// After construction only a copy throws or allocates.
 class MovingArm
@@ -44,46 +44,47 @@ public:
   static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit from which on the arm stops [-]
   static constexpr double STILL = 0.1;            ///< largest speed of a joint at which unlock() works [rad/s]
 
-  /// `drives`: as in the constructor of ArmTwin. The onsets of faults count from the beginning of the motion; faults
-  /// with an onset of 0 exist from the reset on. `settling`: 0 or more [s]. @throws ParameterError.
+  /// `drives`: as in the constructor of ArmTwin. The onsets of faults count from the beginning of the motion, but
+  /// faults with an onset of 0 exist from the reset on. `settling`: 0 or more [s]. @throws ParameterError.
   MovingArm(const ArmDescription& arm, const std::vector<Parameters>& drives, ArmMotion motion,
             const SurfaceSource& surface_source, double settling = SETTLING);
 
-  /// Sets the arm back to the start of the motion given at construction. Returns false as ArmTwin::reset() does.
+  /// Sets the arm back to the start of the motion given at construction. Returns false if ArmTwin::reset() does.
   bool reset(Stamp stamp) noexcept;
 
-  /// Makes one step, as ArmTwin::step(), with the commands of the controller.
+  /// Makes one step of the twin under the controller. Returns as ArmTwin::step() does.
   bool step(Stamp until) noexcept;
 
-  /// Begins another motion now, from the present set point, which replaces the first set point of `motion`. `motion`
-  /// receives the motion of the last call in exchange.
+  /// Begins another motion now, from the present set point, which replaces the first set point of `motion`. The
+  /// function swaps `motion` with the motion of the last call, so that it need not release memory.
   void follow(ArmMotion& motion) noexcept;
 
-  /// Time until the end of the commanded motion; it is negative after the end [s].
+  /// Time until the end of the motion given to follow(); negative after the end [s].
   double commandLeft() const noexcept
   {
     return commanded_.end() - commanded_.begin() - toSeconds(twin_.stamp() - command_begin_);
   }
 
-  /// Adds a set point at `time` to a motion that comes point by point. The motion given at construction must have two
-  /// set points, the start first. `time` counts in that motion and is later than in the last call.
+  /// Adds a set point to a motion that receives its set points one by one. The motion given at construction must have
+  /// two set points, the start first. `time` [s] is on the time axis of that motion and never decreases from call to
+  /// call. A set point at the time of the last one replaces it.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
-  /// Sets the payload at the tip, from the next step on. The controller feeds its torque forward.
+  /// Sets the payload at the tip, from the next step on. The controller feeds forward the torque of this payload.
   void setPayload(const Payload& payload) noexcept;
 
   /// Gives the present set point of each joint. `motion` has an entry for each joint.
   void wanted(std::vector<JointMotion>& motion) noexcept { wantedAt(twin_.stamp(), motion); }
 
-  /// Ends a protective stop. The controller then holds the arm where it stands until the next motion. Returns false,
-  /// and the arm stays stopped, if a joint still moves.
+  /// Ends a protective stop. The controller then holds the arm in its present pose until the next motion. If a joint
+  /// still moves, the function does nothing and returns false.
   bool unlock() noexcept;
 
-  /// The protective stop of the arm; none if it is not stopped.
+  /// The present protective stop; none: the controller has not stopped the arm.
   const std::optional<ProtectiveStop>& protectiveStop() const noexcept { return stop_; }
 
   JointReading reading(std::size_t joint) const noexcept;
-  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< begin of the motion given at construction [ns]
+  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< begin of the first motion [ns]
   ArmTwin& twin() noexcept { return twin_; }
   const ArmTwin& twin() const noexcept { return twin_; }
   const ArmController& controller() const noexcept { return controller_; }

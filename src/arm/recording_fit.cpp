@@ -22,14 +22,15 @@ namespace
 constexpr double FASTEST = 10.0;      // speed that no joint of an arm exceeds [rad/s]
 constexpr double FACTOR_OFF = 0.03;   // least deviation of a factor that counts; scales of encoders deviate by less [-]
 constexpr double DEVIATIONS = 3.0;    // least significant difference, in standard deviations [-]
-constexpr double WIDE = 2.0;          // largest factor that a payload or another gain causes [-]
-constexpr double WIDEST_FACTOR = 20;  // largest factor of stamps; a larger one shows another unit [-]
-constexpr double LAG_OFF = 0.05;      // least lag of the velocity that counts [s]
+constexpr double WIDE = 2.0;          // largest factor on the currents that a wrong payload or gain causes [-]
+constexpr double WIDEST_FACTOR = 20;  // largest factor from stamps in seconds; a larger one shows another unit [-]
+constexpr double LAG_OFF = 0.05;      // least lag of the velocity behind the angle that counts [s]
 constexpr std::uint64_t MIN_ROWS = 100;
-constexpr double UNCHANGED = 2.0;       // longest motion without a change of a measured current [s]
-constexpr double LEAST_SQUARE = 1e-12;  // least square of an uncertainty, because simulated data may have none
+constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays constant [s]
+constexpr double LEAST_SQUARE = 1e-12;  // least assumed square of an uncertainty; simulated data may have none
 
-/// Text on the lag of currents behind their motion, such as "0.2 s later". `longest`: longest lag of the fit [s].
+/// Text on the lag of the currents behind the motion [s], for example "0.2 s later". `longest`: longest lag that the
+/// fit tries [s].
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
@@ -41,11 +42,12 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// Whether the factor is farther from 1 than by gains of one type and by payloads with which joints can be judged.
+/// Whether the factor of current over load is farther from 1 than gains of one type, and payloads with which joints can
+/// be judged, can cause.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
-  constexpr double SURE = 2.0;  // standard deviations; few, because a joint without a verdict gives no alarm
+  constexpr double SURE = 2.0;  // standard deviations; few, because a missing verdict gives no false alarm
   return std::abs(std::log(std::max(factor.value, 1e-3))) >
          std::log(OTHER) + SURE * factor.uncertainty / std::max(factor.value, 1e-3);
 }
@@ -55,8 +57,8 @@ std::string rounded(double value)
   return roundedText(value, 3);
 }
 
-/// Describes how angle and velocity of one joint contradict each other. `own`: factor of this joint. `of_stamps`:
-/// factor of most joints.
+/// Describes how angle and velocity of one joint contradict each other. `own`: change of the joint's angle over the
+/// integral of its velocity [-]. `of_stamps`: the same factor in most joints, which wrong stamps cause.
 RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 {
   constexpr double STANDS = 0.01;
@@ -84,8 +86,8 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
 
 double likelyTimeScale(double period)
 {
-  constexpr double FASTEST_ROWS = 0.5e-3;  // [s]
-  constexpr double LONG = 0.5;             // least time between rows that is no telemetry [s]
+  constexpr double FASTEST_ROWS = 0.5e-3;  // least time between rows of a robot [s]
+  constexpr double LONG = 0.5;             // time between rows from which on stamps are not in seconds [s]
   if (period < LONG)
   {
     return 1.0;
@@ -293,7 +295,8 @@ EffortFit RecordingFit::effort() const
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    // The weight is the load and not the certainty, because a current that never changes would be the most certain one.
+    // The weight of a joint is its load, not the certainty of its slope, because a current that never changes has the
+    // most certain slope.
     double weight = 0.0;
     const FittedFactor slope = joint.lag.now().slope(weight);
     if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)
@@ -305,7 +308,7 @@ EffortFit RecordingFit::effort() const
     squares += weight * weight * slope.uncertainty * slope.uncertainty;
     for (std::size_t unit = 0; unit < units.size(); ++unit)
     {
-      // If the efforts have this unit, the currents by the configured unit are too large by this factor.
+      // If the efforts have the unit number `unit`, the configured unit makes the currents too large by this factor.
       expected[unit] +=
           weight * joint.current_per_effort[static_cast<std::size_t>(joint.effort)] / joint.current_per_effort[unit];
     }
@@ -347,7 +350,7 @@ RecordingFit::LoadRest RecordingFit::loadRest(EffortUnit unit) const
 
 std::vector<RecordingFinding> RecordingFit::ofArm() const
 {
-  constexpr double MIN_SHARE = 0.1;  // least share of fast rows among the moving rows; jumps in a recording make fewer
+  constexpr double MIN_SHARE = 0.1;  // least fast rows over moving rows; jumps in a recording make fewer [-]
   const auto is_too_fast = [](const Joint& joint)
   { return static_cast<double>(joint.fast_rows) > static_cast<double>(MIN_ROWS) + MIN_SHARE * joint.moving_rows; };
   std::vector<RecordingFinding> findings;
@@ -359,7 +362,7 @@ std::vector<RecordingFinding> RecordingFit::ofArm() const
   if (std::optional<RecordingFinding> times = ofTimes())
   {
     findings.push_back(std::move(*times));
-    return findings;  // with wrong times the load is wrong too
+    return findings;  // wrong times make the load wrong, so the findings below would be wrong too
   }
   if (std::any_of(joints_.begin(), joints_.end(), is_too_fast))
   {

@@ -17,11 +17,11 @@
 
 namespace hjt
 {
-/// Largest time between rows that still show accelerations: rows at 20 Hz, with jitter [s].
+/// Largest time between rows that still show accelerations: the period of rows at 20 Hz, plus jitter [s].
 constexpr double SLOW_ROWS = 0.06;
 
-/// Factor that converts stamps in ms, us or ns to seconds; 1: the stamps are in seconds. `period`: time between rows if
-/// the stamps were in seconds.
+/// Factor that converts stamps in ms, us or ns to seconds [-]; 1: the stamps are probably in seconds. `period`: time
+/// from row to row if the stamps are in seconds [s].
 double likelyTimeScale(double period);
 
 /// Name of the unit in messages, for example "the motor's current in A".
@@ -29,14 +29,14 @@ const char* effortUnitName(EffortUnit unit);
 /// Keyword of the unit in the configuration.
 const char* effortKeyword(EffortUnit unit);
 
-/// A contradiction in a recording of an arm, or a fact that limits what it shows.
+/// A contradiction in a recording of an arm, or a fact that limits what the recording shows.
 struct RecordingFinding
 {
   /// Name in JSON files: reading, period, stamps, ratio, angle_unit, effort_unit, gain, current_lag, effort_constant,
   /// velocity_zero, velocity_sign, velocity_unit, velocity_scale, lag, no_velocity or at_rest.
   std::string kind;
   std::string text;             ///< the finding as a clause without a full stop
-  std::optional<Reason> stops;  ///< reason why the finding prevents a verdict; none: it does not prevent a verdict
+  std::optional<Reason> stops;  ///< reason of the missing verdict; none: the finding prevents no verdict
 };
 
 /// Ranges of angle, speed and current of a joint in a recording; empty before the first row.
@@ -44,25 +44,25 @@ struct JointReach
 {
   std::uint64_t rows{};
   double least_angle{ std::numeric_limits<double>::infinity() };    ///< least angle [rad]
-  double most_angle{ -std::numeric_limits<double>::infinity() };    ///< [rad]
+  double most_angle{ -std::numeric_limits<double>::infinity() };    ///< largest angle [rad]
   double least_speed{};                                             ///< least speed; 0: no negative motion [rad/s]
-  double most_speed{};                                              ///< [rad/s]
+  double most_speed{};                                              ///< largest speed; 0: no positive motion [rad/s]
   double least_current{ std::numeric_limits<double>::infinity() };  ///< least current, computed from the effort [A]
-  double most_current{ -std::numeric_limits<double>::infinity() };  ///< [A]
+  double most_current{ -std::numeric_limits<double>::infinity() };  ///< largest current, computed from the effort [A]
 };
 
 /// How the currents of an arm change with its load.
 struct EffortFit
 {
-  FittedFactor factor;  ///< current per load over that by telemetry.torque_per_current; NaN: too little load [-]
-  EffortUnit unit{};    ///< unit that the recording shows; if it shows none, the configured unit
-  bool is_known{};      ///< whether the factor belongs to a unit of the effort
+  FittedFactor factor;  ///< measured current over the current that the load takes; NaN: too little load [-]
+  EffortUnit unit{};    ///< unit of the efforts that the recording shows, otherwise the configured unit
+  bool is_known{};      ///< whether the factor fits `unit`
 };
 
 /// Checks whether the rows of an arm fit together: angles with velocities and stamps, and currents with the load.
 ///
-/// The rows are those of all joints, live or from a recording. The findings are those of the last minutes of motion.
-/// `update` neither throws nor allocates.
+/// The rows are those of all joints, live or from a recording. The findings are from the last minutes of motion.
+/// update() neither throws nor allocates.
 class RecordingFit
 {
 public:
@@ -72,10 +72,10 @@ public:
   explicit RecordingFit(const std::vector<Parameters>& joints);
 
   void reset() noexcept;
-  /// `torques`: load of each joint; NaN: not known [N.m].
+  /// Adds one row. `joints`: sample of each joint. `torques`: load of each joint; NaN: not known [N.m].
   void update(const std::vector<MotionSample>& joints, const std::vector<double>& torques) noexcept;
 
-  /// Factor by which the stamps must be stretched so that they fit the velocities of most joints; NaN: not known.
+  /// Factor on the times between stamps with which the stamps fit the velocities of most joints [-]; NaN: not known.
   FittedFactor stampFactor() const;
   EffortFit effort() const;
   const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
@@ -84,19 +84,19 @@ public:
   /// Fit of the joint's angle and velocity.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
 
-  /// Sets a misfit with which no joint can be judged. An empty misfit removes it.
+  /// Sets a misfit that prevents the verdict of each joint. An empty misfit removes the one that was set.
   void refuse(const Misfit& misfit) { refusal_ = misfit; }
 
   /// Root mean squares of the currents of the moving joints; NaN: no joint moved.
   struct LoadRest
   {
-    double current{};  ///< current without the fitted constant, friction and inertia of the rotor [A]
-    double left{};     ///< `current` without the current that the load takes [A]
+    double current{};  ///< current - fitted constant, friction and inertia of the rotor [A]
+    double left{};     ///< `current` - current that the load takes [A]
 
-    /// Share of the current that the load does not explain; not finite: no joint moved [-].
+    /// Share of `current` that the load does not explain [-]; not finite: no joint moved.
     double share() const { return left / current; }
   };
-  /// The currents that follow if the efforts have this unit.
+  /// LoadRest of the currents that the program computes from the efforts if their unit is `unit`.
   LoadRest loadRest(EffortUnit unit) const;
 
   std::vector<RecordingFinding> ofArm() const;
@@ -115,9 +115,9 @@ private:
 
   struct Joint
   {
-    double gain{};  // torque per current [N.m/A]
+    double gain{};  // torque at the joint per current of the motor [N.m/A]
     EffortUnit effort{};
-    std::vector<double> current_per_effort;  // current per effort of 1 for each unit [A], [A/(N.m)]
+    std::vector<double> current_per_effort;  // current for an effort of 1 in each unit [A]
     TimeFit time;
     RatioFit ratio;
     CurrentLag lag;

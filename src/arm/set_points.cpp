@@ -25,11 +25,12 @@ namespace hjt
 namespace
 {
 constexpr double PERIOD = 0.008;         // time between set points [s]
-constexpr double LARGEST = 100.0;        // largest angle, for joints that turn without end [rad]
+constexpr double LARGEST = 100.0;        // largest angle in a program, for joints that turn without limits [rad]
 constexpr double LONGEST_REST = 3600.0;  // longest rest after a move [s]
 constexpr const char* MOVES = "moves";
 
-/// Reads the moves of a program. A value at the top of the file holds for each move that does not give its own value.
+/// Reads the moves of a program. A speed, acceleration, jerk or wait at the top of the file holds for each move that
+/// does not give its own value.
 class ProgramReader
 {
 public:
@@ -124,8 +125,8 @@ private:
 };
 
 /// Reads a program and returns its set points at 125 Hz. A program is a YAML file of moves between via points
-/// (docs/arm_twin.md). The arm rests for half a second before and after the moves. @throws ParameterError naming file,
-/// line and key, or the joint and its limit.
+/// (docs/arm_twin.md). The arm rests for half a second before the first move and after the last one. @throws
+/// ParameterError naming file, line and key, or the joint and its limit.
 std::vector<ArmSetPoint> readArmProgram(const std::string& path, const ArmDescription& arm)
 {
   ProgramReader reader(path, arm.joints.size());
@@ -150,7 +151,8 @@ int columnOf(const std::vector<std::string>& header, const std::vector<std::stri
   return -1;
 }
 
-/// Time from one set point to the next by the joints' speeds, a least-squares fit [s]; NaN: the joints are too slow.
+/// Time from one set point to the next in which the joints' speeds give the change of their angles, by least squares
+/// [s]; NaN: the joints are slower than `least_speed` [rad/s].
 double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least_speed)
 {
   double way = 0.0;
@@ -164,11 +166,11 @@ double stepByMotion(const ArmSetPoint& from, const ArmSetPoint& to, double least
   return squares > least_speed * least_speed ? way / squares : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Sets speeds of the first or last set point of a motion to zero. `point` has the mean speeds of the row beside it,
-/// which lasts `length` [s]. A joint is at rest in the set point if it can start or stop within this time.
+/// Sets to 0 the speed of each joint at the first or last set point `point`, if the joint can start or stop within
+/// `length`. On entry the speeds are means over the time `length` [s] between `point` and the set point beside it.
 void restAtEnd(double length, ArmSetPoint& point)
 {
-  constexpr double ACCELERATION = 10.0;  // [rad/s^2]
+  constexpr double ACCELERATION = 10.0;  // largest assumed acceleration of a joint [rad/s^2]
   for (JointMotion& joint : point.joints)
   {
     joint.velocity = std::abs(joint.velocity) <= ACCELERATION * length ? 0.0 : joint.velocity;
@@ -178,11 +180,11 @@ void restAtEnd(double length, ArmSetPoint& point)
 /// Says that the speeds of a joint have another unit or sign than its angles; empty: the speeds fit the angles.
 std::string rateErrors(const std::vector<ArmSetPoint>& points, std::size_t joint)
 {
-  constexpr double LEAST_WAY = 0.1;        // least sum of a joint's motion with which it is checked [rad]
-  constexpr double LEAST_PART = 1e-4;      // least motion in a row that counts [rad]
+  constexpr double LEAST_WAY = 0.1;        // least distance that a joint must move to be checked [rad]
+  constexpr double LEAST_PART = 1e-4;      // least change of the angle in a row with motion [rad]
   constexpr std::size_t LEAST_ROWS = 3;    // least number of rows with motion; fewer rows are a jump
   constexpr Range SAME_RATES{ 0.5, 2.0 };  // allowed median of the speed over the rate of the angle [-]
-  double way = 0.0;                        // [rad]
+  double way = 0.0;                        // distance that the joint moves [rad]
   std::vector<double> ratios;
   for (std::size_t k = 1; k < points.size(); ++k)
   {
@@ -223,10 +225,11 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// Says which joint would turn far faster than its limit. The set points of a controller may be a little faster.
+/// Says which joint would turn faster than three times its speed limit. Set points of a controller can be slightly
+/// above the limit itself.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
-  constexpr double TIMES = 3.0;  // largest multiple of the joint's speed limit [-]
+  constexpr double TIMES = 3.0;  // largest allowed speed over the joint's speed limit [-]
   constexpr double SHORT = 0.1;  // time over which speeds are averaged, because single stamps jitter [s]
   std::size_t from = 0;
   for (const ArmSetPoint& to : points)
@@ -311,12 +314,12 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 
 double straightenTimes(std::vector<ArmSetPoint>& points)
 {
-  constexpr double MOVING = 0.05;      // least speed of all joints, as the root of the sum of squares [rad/s]
+  constexpr double MOVING = 0.05;      // least root of the summed squares of the joints' speeds [rad/s]
   constexpr double SAME_RATES = 0.02;  // largest share by which speeds and rates of the angles may differ [-]
-  constexpr double JITTER = 0.1;       // least jitter that counts, rms, as a share of the step [-]
-  constexpr double LONGEST = 4.0;      // longest step over the step of the stamps [-]
+  constexpr double JITTER = 0.1;       // least jitter of the stamps that counts, rms, over the time between rows [-]
+  constexpr double LONGEST = 4.0;      // largest ratio of the time by the speeds to the time by the stamps [-]
   std::vector<double> steps;
-  double by_stamps = 0.0;  // sum of the stamps' steps in motion [s]
+  double by_stamps = 0.0;  // time between rows by the stamps, summed over the rows with motion [s]
   double by_motion = 0.0;
   double squares = 0.0;
   double moving = 0.0;
@@ -478,7 +481,8 @@ std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
   {
     ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
     const double length = points[k].time - points[k - 1].time;
-    // The acceleration of a cubic is largest at its ends. These times are just inside, where no neighbour counts.
+    // The acceleration of a cubic is largest at its ends. The checked times lie just inside these ends, where the next
+    // cubic has no effect.
     for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
     {
       piece.at(points[k - 1].time + share * length, motion);

@@ -11,26 +11,29 @@
 
 namespace hjt
 {
-/// Reads set points from a CSV file or from a program, FILE.yaml. The CSV file is a recording of a controller, or a
-/// motion that `joint_twin checkup` wrote. A recording has the columns `timestamp` or `time` [s], `target_q_0` and so
-/// on [rad], and optionally `target_qd_0` and `target_qdd_0` and so on. @throws InputError, ParameterError.
+/// Reads set points from a CSV file, or from a program of moves if the path ends with .yaml. The CSV file is a
+/// recording of a controller, or a motion that `joint_twin checkup` wrote. The CSV file has the columns `timestamp` or
+/// `time` [s], `target_q_0` and so on [rad], and optionally `target_qd_0` and `target_qdd_0` and so on. @throws
+/// InputError, ParameterError.
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
-/// Computes missing speeds and accelerations from differences of the angles. A joint rests at each end of the motion,
-/// unless it needs more than 10 rad/s^2 to start or stop within a row, as in a piece of a longer motion.
+/// Computes missing speeds and accelerations from differences of the angles. If the speeds are missing, a joint rests
+/// at the first and the last set point, unless it would need more than 10 rad/s^2 to start or stop within one row. This
+/// is the case if the set points are a piece of a longer motion.
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
 
-/// Corrects the times of set points whose stamps jitter, for example because rows were stamped after they were sent.
-/// Each step becomes the time that the joints need from row to row at their speeds. The times stay if the speeds are
-/// not the rates of the angles, or if the stamps fit them. Returns the largest change of a step, 0 without a change
-/// [s].
+/// Corrects the times of set points whose stamps jitter, for example because a program stamped the rows when it
+/// received them. The time between two rows becomes the time that the joints need from row to row at their speeds. The
+/// times stay if the speeds are not the rates of the angles, or if the stamps fit the speeds. Returns the largest
+/// change of the time between two rows [s]; 0: no change.
 double straightenTimes(std::vector<ArmSetPoint>& points);
 
-/// The warning that straightenTimes() changed the times. `change`: the result of straightenTimes(), > 0 [s].
+/// Text of the warning that straightenTimes() changed the times. `change`: the result of straightenTimes(), > 0 [s].
 std::string straightenedText(double change);
 
-/// Says why no arm can follow the set points; empty: it can. The times must increase and end within a million seconds.
-/// The angles must lie in the joint's range, and the speeds must not exceed three times the joint's limit.
+/// Says why the arm cannot follow the set points; empty: it can. The times must increase and end within a million
+/// seconds. The angles must lie in the joint's range, and the speeds must not exceed three times the joint's speed
+/// limit.
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm);
 
 /// @throws InputError if there is no set point, for the reasons that motionErrors() gives, or if a joint cannot bear
@@ -40,8 +43,9 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription&
 /// @throws InputError if the size or the sign of a joint's speeds is not that of the angles' rates.
 void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 
-/// Checks the accelerations of a motion. Links and payload may need at most ArmJoint::torque_limit. With the motor's
-/// own inertia they may need at most the torque of the motor. The class neglects friction.
+/// Checks the torques that the accelerations of a motion need. Links and payload may need at most
+/// ArmJoint::torque_limit. Links, payload and the motor's own inertia together may need at most the torque limit of the
+/// motor. The class neglects friction.
 class MotionLimits
 {
 public:
@@ -50,7 +54,8 @@ public:
 
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// Says which joint would first exceed a limit in a motion by cubics, and when; empty: no joint would.
+  /// Says which joint would first exceed a limit, and when, if the angles follow cubics between the set points; empty:
+  /// no joint would.
   std::string errors(const std::vector<ArmSetPoint>& points);
 
 private:
@@ -60,7 +65,7 @@ private:
     std::string name;
     double torque_limit{};   // largest torque of links and payload; 0: no limit [N.m]
     double motor_limit{};    // largest torque of the motor, seen at the output [N.m]
-    double motor_inertia{};  // [kg.m^2]
+    double motor_inertia{};  // inertia of the motor, seen from the joint [kg.m^2]
   };
 
   std::string errorsAt(const std::vector<JointMotion>& motion, double before);

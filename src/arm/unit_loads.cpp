@@ -42,7 +42,8 @@ double UnitLoads::linksMass() const
   return mass;
 }
 
-/// Moves `at` from the frame of the link before to the frame of `link`.
+/// Changes `at` from the motion of the link before to that of `link`. `motion`: motion of the joint that carries
+/// `link`.
 void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
 {
   const Eigen::Vector3d axis = at.orientation * link.axis;
@@ -74,8 +75,8 @@ void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
   at.orientation *= link.rotation;
 }
 
-/// Computes the motion of the tip and the place of each joint. Calls `visit` with the motion of each body, the payload
-/// last, and with the number of joints before the body.
+/// Computes the motion of the tip and the place of each joint. Calls `visit` with the motion of each body (links, then
+/// payload) and with the number of joints between base and body. Returns the motion of the tip.
 template <class Visit>
 UnitLoads::Motion UnitLoads::walk(const std::vector<JointMotion>& motion, const Visit& visit)
 {
@@ -147,10 +148,12 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
     columns(row, 0) = joint.effort(of_mass, tip.place, Eigen::Vector3d::Zero());
     for (Eigen::Index axis = 0; axis < 3; ++axis)
     {
-      // A unit moment has the effects of a mass at the end of `arm` that are linear in `arm`. Its inertia is quadratic.
+      // The loads by a payload of mass 1 at the distance `arm` from the tip have a part that is linear in `arm`. This
+      // part is the load by a unit moment. The quadratic part is that of the payload's inertia.
       const Eigen::Vector3d arm = tip.orientation.col(axis);
       columns(row, 1 + axis) = joint.effort(tip.swing(arm), tip.place, arm.cross(of_mass));
-      // The weight of what the joint carries: its moment about a joint that turns, or its force on a joint that slides.
+      // Load by the weight of the mass after the joint, in a unit gravity along `axis`: a torque if the joint turns, a
+      // force if the joint slides.
       const Eigen::Vector3d up = -Eigen::Vector3d::Unit(axis);
       columns(row, 4 + axis) = joint.turns ? joint.axis.dot((joint.moment - joint.mass * joint.origin).cross(up)) :
                                              joint.mass * joint.axis.dot(up);

@@ -10,14 +10,14 @@
 
 namespace hjt
 {
-/// Torques at an arm's joints, either of its own links, or of unit payloads, unit gravity and a unit drag. Each
-/// function walks once along the links and takes less time than ArmDynamics. Its result differs from that of
-/// ArmDynamics only by rounding. After construction nothing throws or allocates.
+/// Loads of an arm's joints, either by links, payload and drag, or by unit payloads, unit gravity and unit forces on
+/// the tip. Each function walks once along the links and takes less time than ArmDynamics. The results differ from
+/// those of ArmDynamics only by rounding. After construction nothing throws or allocates.
 class UnitLoads
 {
 public:
   static constexpr int COLUMNS = 10;
-  using Torques = Eigen::Matrix<double, COLUMNS, 1>;  ///< torques at one joint by each unit load
+  using Torques = Eigen::Matrix<double, COLUMNS, 1>;  ///< torques at one joint by each unit load, as in torques()
 
   explicit UnitLoads(const ArmDescription& arm);
 
@@ -47,24 +47,25 @@ private:
     Eigen::Matrix3d inertia;
   };
 
-  /// A joint in the frame of the base, and the mass that it carries.
+  /// A joint in the frame of the base, and the mass of all links and the payload after the joint.
   struct Joint
   {
     bool turns{};
     Eigen::Vector3d axis;
     Eigen::Vector3d origin;
-    double mass{};           // mass that the joint carries [kg]
-    Eigen::Vector3d moment;  // moment about the base of that mass [kg.m], or of the force on it [N.m]
-    Eigen::Vector3d force;   // force on the carried mass [N]
+    double mass{};           // mass after the joint [kg]
+    Eigen::Vector3d moment;  // first moment of this mass about the base [kg.m], or moment of the force on it [N.m]
+    Eigen::Vector3d force;   // force on this mass [N]
 
-    /// Torque of a joint, or its force along the axis, under a force at `place` and a moment `couple`.
+    /// Torque about the axis of a joint that turns [N.m], or force along the axis of a joint that slides [N], under a
+    /// force `force` at `place` and a moment `couple`.
     double effort(const Eigen::Vector3d& force, const Eigen::Vector3d& place, const Eigen::Vector3d& couple) const
     {
       return axis.dot(turns ? Eigen::Vector3d(couple + (place - origin).cross(force)) : force);
     }
   };
 
-  /// Motion of a link's frame in the frame of the base.
+  /// Pose and motion of a link's frame, in the frame of the base.
   struct Motion
   {
     Eigen::Matrix3d orientation = Eigen::Matrix3d::Identity();

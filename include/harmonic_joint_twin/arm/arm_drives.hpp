@@ -22,8 +22,8 @@ struct ArmOptions
 };
 
 /// All drives of an arm without a controller. The links couple the drives. The caller commands the motors' torques, as
-/// for a single Twin. The class is in the library harmonic_joint_twin_arm. After construction no member throws or
-/// allocates.
+/// with a single Twin. The library harmonic_joint_twin_arm contains the class. After construction no function of the
+/// class throws or allocates.
 class ArmDrives
 {
 public:
@@ -36,7 +36,7 @@ public:
   std::size_t joints() const noexcept { return names().size(); }
   /// Drive of one joint. The caller commands and reads the drive, but must not step it.
   Twin& drive(std::size_t joint) noexcept;
-  double startAngle(std::size_t joint) const noexcept;  ///< joint angle at which the drive's encoders read 0 [rad]
+  double startAngle(std::size_t joint) const noexcept;  ///< angle of this joint at which its encoders read 0 [rad]
 
   bool reset(Stamp stamp) noexcept;  ///< returns all drives to the initial state, as Twin::reset does
   bool step(Stamp until) noexcept;   ///< advances all drives by one solver step, as Twin::step does
