@@ -11,7 +11,7 @@ namespace hjt
 {
 namespace
 {
-/// Common factor of the joints from `begin` to `end`, apart from the known `factors` of the joints.
+/// Group of the joints from `begin` to before `end`, with the median of their friction ratios over `factors`.
 JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors, double tolerance,
                    std::size_t begin, std::size_t end)
 {
@@ -35,8 +35,8 @@ JointGroup groupOf(const std::vector<MeasuredFriction>& joints, const std::vecto
   return group;
 }
 
-/// The temperature at which the median friction of the joints is that of their twins. None if a temperature was
-/// received, or if no temperature between COLDEST and WARMEST explains the friction.
+/// Temperature at which the median over the joints of (measured friction / twin's friction) is 1 [degC]. None if a
+/// temperature was received, or if the median is 1 at no temperature from COLDEST to WARMEST.
 std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
 {
   constexpr double COLDEST = 0.0;  // lowest possible temperature of the drives [degC]
@@ -61,7 +61,7 @@ std::optional<double> temperatureOf(const std::vector<MeasuredFriction>& joints)
   {
     return std::nullopt;
   }
-  for (int i = 0; i < HALVINGS; ++i)  // the friction of the twins falls with the temperature
+  for (int i = 0; i < HALVINGS; ++i)  // the twins' friction falls as the temperature rises
   {
     const double middle = 0.5 * (low + high);
     (is_colder(middle) ? high : low) = middle;
@@ -108,7 +108,7 @@ double scatterBeside(std::size_t joint, const JointGroup& group, const std::vect
   return count > 1.0 ? std::sqrt(std::max(0.0, variance - UNWITNESSED * UNWITNESSED) / count) : 0.0;
 }
 
-/// Multiplies the factors of the joints of a group by the common factor of the group.
+/// Multiplies the factors in `arm` of the group's joints by the common factor of the group, and sets their deviations.
 void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, ArmFriction& arm)
 {
   const auto begin = joints.begin() + static_cast<std::ptrdiff_t>(group.begin);
@@ -126,10 +126,10 @@ void take(const JointGroup& group, const std::vector<MeasuredFriction>& joints, 
   }
 }
 
-/// Whether a joint shows as much friction as a larger joint would, relative to the factor of the whole arm.
+/// Whether a joint has more than FAR_MORE times the friction expected with `factors`, as a larger joint would.
 bool hasFarMore(const std::vector<MeasuredFriction>& joints, const std::vector<double>& factors)
 {
-  constexpr double FAR_MORE = 2.0;  // larger multiples of the expected friction are far more [-]
+  constexpr double FAR_MORE = 2.0;  // multiple of the expected friction [-]
   bool has_one = false;
   for (std::size_t i = 0; i < joints.size(); ++i)
   {

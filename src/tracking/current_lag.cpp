@@ -10,7 +10,7 @@ namespace hjt
 Eigen::Matrix2d LoadRegression::left() const
 {
   constexpr double RIDGE =
-      1e-9;  // share of the mean square, because constant and friction are alike in motion in one direction [-]
+      1e-9;  // share of the columns' squares that is added, because in one direction constant = friction [-]
   const Eigen::Matrix<double, OTHERS, OTHERS> others =
       sums_.topLeftCorner<OTHERS, OTHERS>() +
       Eigen::Matrix<double, OTHERS, OTHERS>(RIDGE * sums_.diagonal().head<OTHERS>().asDiagonal());
@@ -29,7 +29,7 @@ double LoadRegression::leftByLoad() const
 
 FittedFactor LoadRegression::slopeOf(const Eigen::Matrix2d& left, double seconds)
 {
-  constexpr double CORRELATED = 0.5;   // rows within this time have the same information [s]
+  constexpr double CORRELATED = 0.5;   // time over which the errors of rows are alike [s]
   constexpr double MIN_CONTENT = 0.1;  // least rms of the unexplained load; errors of friction and inertia are less [A]
   FittedFactor slope;
   if (seconds < MIN_SECONDS || !(left(0, 0) > MIN_CONTENT * MIN_CONTENT * seconds))
@@ -57,7 +57,7 @@ constexpr std::size_t MIDDLE = CurrentLag::LAGS / 2;
 
 double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 {
-  constexpr double CLEARLY = 0.75;  // largest rms of the residual with the lag, over that without a lag [-]
+  constexpr double CLEARLY = 0.75;  // largest rms of the residual with the lag, over the rms without a lag [-]
   std::size_t best = MIDDLE;
   for (std::size_t i = 1; i + 1 < CurrentLag::LAGS; ++i)
   {
@@ -71,8 +71,8 @@ double ownLag(const std::array<double, CurrentLag::LAGS>& left)
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left)
 {
   constexpr double CLEARLY =
-      0.93;  // largest rms of the residual with the lag, over that without a lag; a sound UR5 has more [-]
-  constexpr double AGREES = 0.96;  // largest such ratio of a single joint that agrees with the lag [-]
+      0.93;  // largest rms of the residual with the lag, over the rms without a lag; a sound UR5 has more [-]
+  constexpr double AGREES = 0.96;  // largest ratio of these rms in a joint that agrees with the lag [-]
   double best_share = CLEARLY;
   double best_lag = 0.0;
   for (std::size_t i = 0; i < CurrentLag::LAGS; ++i)

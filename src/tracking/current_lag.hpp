@@ -22,21 +22,22 @@ class LoadRegression
 public:
   void add(double step, double velocity, double acceleration, double load, double current) noexcept
   {
-    constexpr double MEMORY = 120.0;  // time of motion over which the regression forgets rows [s]
+    constexpr double MEMORY = 120.0;  // time constant with which the regression forgets rows, in time of motion [s]
     Eigen::Matrix<double, OTHERS + 2, 1> row;
     row << 1.0, std::copysign(1.0, velocity), velocity, acceleration, load, current;
     sums_ = (1.0 - step / MEMORY) * sums_ + step * row * row.transpose();
   }
 
   double seconds() const { return sums_(0, 0); }
-  /// Products of load and current after subtraction of what constant, friction and acceleration explain [A^2 s].
+  /// Sums over time of load^2, load x current and current^2 [A^2 s], as a 2 x 2 matrix, after subtraction of the parts
+  /// that constant, friction and acceleration explain.
   Eigen::Matrix2d left() const;
   /// Mean square of the current that no column of the regression explains [A^2]; NaN: too little motion.
   double leftByLoad() const;
-  /// Slope of the current over the load; NaN: the load varies too little. `content`: integral over time of the square
-  /// of the load that the other columns do not explain.
+  /// Slope of the current over the load; NaN: the load varies too little. Sets `content` to the integral over time of
+  /// the square of the load that the other columns do not explain [A^2 s].
   FittedFactor slope(double& content) const;
-  /// The same slope, from the products that left() gives [A^2 s] and the time over which they were summed [s].
+  /// Slope of the current over the load, from the result of left() [A^2 s] and the time of its sums [s].
   static FittedFactor slopeOf(const Eigen::Matrix2d& left, double seconds);
 
 private:
@@ -46,9 +47,9 @@ private:
   Eigen::Matrix<double, OTHERS + 2, OTHERS + 2> sums_ = Eigen::Matrix<double, OTHERS + 2, OTHERS + 2>::Zero();
 };
 
-/// One LoadRegression for each of several lags of the current behind the motion. A row counts every 20 ms. Between rows
-/// the motion is interpolated linearly. Only motion faster than MotionDifferentiator::SLIDING counts. Nothing
-/// allocates.
+/// One LoadRegression for each of several lags of the current behind the motion. At most one row in 20 ms counts.
+/// Between rows the motion is interpolated linearly. Only motion faster than MotionDifferentiator::SLIDING counts.
+/// Nothing allocates.
 class CurrentLag
 {
 public:
@@ -89,12 +90,12 @@ public:
     return left;
   }
 
-  /// The regression without a lag.
+  /// The regression for the lag 0.
   const LoadRegression& now() const { return regressions_[LAGS / 2]; }
 
 private:
   static constexpr double PERIOD = 0.019;  // least time between two rows that count [s]
-  static constexpr std::size_t ROOM = 64;  // number of held rows: enough for twice LONGEST at PERIOD
+  static constexpr std::size_t ROOM = 64;  // number of held rows, which cover more than twice LONGEST
 
   struct Row
   {
@@ -106,7 +107,8 @@ private:
   };
   const Row& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
 
-  /// Adds the current in the middle of the held rows to each regression, with the motion at the lag from it.
+  /// Adds to each regression the current of the middle row of the held rows, with the motion earlier by the lag of the
+  /// regression.
   void take() noexcept
   {
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
@@ -148,10 +150,11 @@ private:
   std::array<LoadRegression, LAGS> regressions_{};
 };
 
-/// Lag of an arm's currents behind its motion on which most of its joints agree [s]; 0: no clear lag. `left`:
-/// CurrentLag::left of each joint.
+/// Lag of an arm's currents behind the motion on which most joints of the arm agree [s]; 0: no clear lag. `left`:
+/// result of CurrentLag::left() for each joint.
 double commonLag(const std::vector<std::array<double, CurrentLag::LAGS>>& left);
 
-/// Lag of the current of a single joint [s]; 0: no clear lag. A single joint must show its lag more clearly.
+/// Lag of the current of a single joint behind its motion [s]; 0: no clear lag. The lag must be longer and reduce the
+/// residual more than a lag that commonLag() finds. `left`: result of CurrentLag::left().
 double ownLag(const std::array<double, CurrentLag::LAGS>& left);
 }  // namespace hjt

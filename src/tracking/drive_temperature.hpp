@@ -15,11 +15,11 @@
 
 namespace hjt
 {
-/// Keeps values with the times from which they hold, for rows that come later. Nothing allocates.
+/// Keeps values, and for each value the time from which on it holds, for rows that arrive later. Nothing allocates.
 class HeldValues
 {
 public:
-  static constexpr std::size_t ROOM = 512;  ///< largest number of values that are kept
+  static constexpr std::size_t ROOM = 512;  ///< number of values that are kept
 
   void push(double time, double value) noexcept
   {
@@ -44,11 +44,12 @@ public:
 
   void clear() noexcept { begin_ = end_; }
 
-  /// Marks all values so far as values of rows that were received.
+  /// Marks all values so far as values for rows that have arrived.
   void mark() noexcept { marked_ = end_; }
 
-  /// Call this function when the time of the rows jumps back. It forgets the values up to the mark. It also forgets
-  /// later values up to the first one before `earliest` [s], because the values from there on belong to rows to come.
+  /// Call this function when the time of the rows jumps back. Forgets the values up to the mark, and the values after
+  /// the mark up to the first one whose time is before `earliest` [s]. This value and the later ones belong to rows
+  /// that follow.
   void jumpBack(double earliest) noexcept
   {
     begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
@@ -76,16 +77,16 @@ private:
 class TemperatureRecord
 {
 public:
-  /// Largest age of a temperature that is used [s]. The joints of a UR warm up with a time constant of some 1600 s at
-  /// least. So in 60 s they warm up by 4 % of the whole rise, which is 1 K or less.
+  /// Age up to which a temperature is used [s]. The joints of a UR warm up with a time constant of 1600 s or more. So
+  /// in 60 s a joint warms up by at most 4 % of the whole rise, which is 1 K or less.
   static constexpr double MAX_AGE = 60.0;
-  static constexpr double LOWEST = -20.0;  ///< [degC]
-  static constexpr double HIGHEST = 120.0;
+  static constexpr double LOWEST = -20.0;   ///< lowest possible temperature [degC]
+  static constexpr double HIGHEST = 120.0;  ///< highest possible temperature [degC]
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// Keeps a temperature [degC] of a time [s] with any zero. Refuses numbers that are not finite, and temperatures
-  /// outside of LOWEST ... HIGHEST.
+  /// Keeps a temperature [degC] measured at `time` [s]. Refuses numbers that are not finite, and temperatures outside
+  /// of LOWEST ... HIGHEST.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))
@@ -117,9 +118,10 @@ private:
 
 /// Temperature of the grease of a measured joint, by the losses in its motion.
 ///
-/// With thermal.model = none the grease has the temperature of the sample, otherwise the configured one. With two_nodes
-/// a measured temperature is that of the housing near the motor, and the grease is warmer. If no temperature is
-/// measured, both nodes warm up above input.temperature. During a gap the joint is assumed to stand. Nothing allocates.
+/// With thermal.model = none the grease has the temperature of the sample, or the configured temperature if the sample
+/// has none. With two_nodes a measured temperature is that of the housing near the motor, and the grease is warmer than
+/// the housing. Without a measured temperature, grease and housing warm up from input.temperature. During a gap the
+/// joint is assumed to stand. Nothing allocates.
 class GreaseTemperature
 {
 public:
@@ -132,7 +134,7 @@ public:
   {
   }
 
-  /// Temperature of the grease at a sample, by the losses before it [degC].
+  /// Temperature of the grease at the time of a sample, by the losses before this time [degC].
   double at(const MotionSample& sample) noexcept
   {
     if (!on_)
@@ -177,20 +179,20 @@ public:
     copper_power_ = copper_loss_ * motor_torque * motor_torque;
   }
 
-  /// Temperature of the housing in the model two_nodes, otherwise that of the grease [degC].
+  /// Temperature of the housing in the model two_nodes, otherwise `grease`, the temperature of the grease [degC].
   double housing(double grease) const noexcept { return on_ ? heat_.housing() : grease; }
 
 private:
   DriveHeat heat_;
-  double housing_rise_;  // [K]
-  double copper_loss_;   // [W/(N.m)^2]
-  double configured_;    // [degC]
+  double housing_rise_;  // thermal.housing_rise [K]
+  double copper_loss_;   // motor.copper_loss [W/(N.m)^2]
+  double configured_;    // input.temperature [degC]
   bool on_;
   bool started_{};
   double last_{};             // time of the last sample [s]
   double elapsed_{};          // time since the last step of the nodes [s]
   DriveHeat::Losses losses_;  // losses since the last step of the nodes
-  double friction_power_{};   // [W]
-  double copper_power_{};     // [W]
+  double friction_power_{};   // power of the friction since the last sample [W]
+  double copper_power_{};     // power of the copper loss since the last sample [W]
 };
 }  // namespace hjt

@@ -17,13 +17,13 @@ namespace hjt
 {
 namespace
 {
-constexpr int POSITIONS = 8;  // number of positions over a tooth pitch
-// The logarithms of the speeds have equal distances.
+constexpr int POSITIONS = 8;  // number of positions within a tooth pitch over which the table averages
+// Speeds of the motor in the table. Each speed is six times the speed before.
 constexpr std::array<double, 7> SPEEDS{ 0.01, 0.06, 0.36, 2.16, 12.96, 77.76, 466.56 };  // [rad/s]
-// Loads as shares of the largest load of the table.
+// Loads of the table over the table's largest load [-].
 constexpr std::array<double, 11> LOADS{ 0.0, 0.02, 0.05, 0.08, 0.12, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0 };
 
-/// Largest load that the motor can hold; for a joint without a motor the load limit [N.m].
+/// Largest load that the motor can hold; output.load_torque_limit if motor.torque_limit is 0 [N.m].
 double largestLoad(const Parameters& parameters)
 {
   const double largest = parameters.motor.torque_limit > 0.0 ?
@@ -38,13 +38,14 @@ double largestLoad(const Parameters& parameters)
   return largest;
 }
 
-/// Table of a drive without errors of manufacture. Tables are kept, because joints of one arm have equal drives.
+/// Losses of a drive without errors of manufacture. The function keeps the tables, because joints of one arm can have
+/// equal drives.
 const std::vector<LossRow>& lossesOf(Parameters parameters, const std::vector<double>& loads)
 {
   parameters.joint = {};
   parameters.telemetry = {};  // the telemetry has no effect on the friction
   parameters.comparison = {};
-  constexpr std::size_t MOST = 64;  // largest number of kept tables, because a fit makes ever new drives
+  constexpr std::size_t MOST = 64;  // largest number of kept tables; a fit tries many drives
   thread_local std::map<std::uint64_t, std::vector<LossRow>> known;
   if (known.size() >= MOST)
   {
@@ -82,7 +83,7 @@ FrictionMap::FrictionMap(const Parameters& parameters)
     if (!row.status.ok() && row.load_torque > parameters.output.load_torque_limit && lines_.size() > 2)
     {
       lines_.resize(i / SPEEDS);
-      break;  // the gear cannot bear a load that the motor can hold
+      break;  // the gear cannot bear this load, although the motor can hold it
     }
     if (!row.status.ok())
     {

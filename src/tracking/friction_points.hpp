@@ -15,7 +15,7 @@
 
 namespace hjt
 {
-/// Mean friction of the rows at one speed, at the joint; > 0 against the motion.
+/// Mean friction at the joint over the rows of one speed; > 0 against the motion.
 struct FrictionPoint
 {
   double speed{};      ///< speed, > 0 in positive direction [rad/s]
@@ -23,7 +23,7 @@ struct FrictionPoint
   double deviation{};  ///< standard deviation of the measured friction from row to row [N.m]
   double twin{};       ///< mean friction of the twin in the same rows [N.m]
   std::uint64_t rows{};
-  double load{};  ///< mean load, > 0 resists positive motion [N.m]
+  double load{};  ///< mean load of these rows, > 0 resists positive motion [N.m]
 };
 
 /// Measured friction over the friction of a reference.
@@ -31,12 +31,12 @@ struct FrictionRatio
 {
   double value{ std::numeric_limits<double>::quiet_NaN() };  ///< measured over reference friction; NaN: not known [-]
   double deviation{};                 ///< standard deviation of `value` by the scatter of the rows [-]
-  double of_points{};                 ///< standard deviation of `value` by leaving out one speed after the other [-]
-  std::vector<FrictionPoint> points;  ///< points at the speeds of both; `twin` holds the friction of the reference
+  double of_points{};                 ///< standard deviation of `value` by a jackknife over the speeds [-]
+  std::vector<FrictionPoint> points;  ///< points at the common speeds; `twin` is the reference's friction
 };
 
-/// Sums of friction in blocks of time. The blocks show the scatter of a ratio, because successive rows are not
-/// independent.
+/// Sums of measured friction and twin's friction in blocks of time. The scatter of these blocks gives the uncertainty
+/// of the friction ratio, because successive rows are not independent.
 class FrictionBlocks
 {
 public:
@@ -58,9 +58,9 @@ public:
 
   std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
 
-  /// Standard deviation of FrictionPoints::ratio by the scatter of the blocks, as a share of the ratio. Each block adds
-  /// the square of: its part of the numerator minus the ratio times its part of the denominator. Infinite: fewer than
-  /// three blocks.
+  /// Relative standard deviation of FrictionPoints::ratio() by the scatter of the blocks [-]; infinite: fewer than
+  /// three blocks. A block adds the square of (part of the numerator - ratio x part of the denominator) to the
+  /// variance.
   double deviation() const
   {
     FrictionBlocks all = *this;
@@ -93,7 +93,7 @@ public:
 
 private:
   static constexpr std::uint64_t MIN_BLOCKS = 3;
-  // Without alignment, so that a class with this member needs no operator new of its own.
+  // DontAlign, so that a class with such a member needs no aligned operator new.
   using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
   using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 
@@ -115,7 +115,7 @@ private:
   std::uint64_t blocks_{};
 };
 
-/// Mean friction by speed, from any number of rows. Both directions of motion are separate.
+/// Mean friction by speed, from any number of rows. The two directions of motion are separate.
 class FrictionPoints
 {
 public:
@@ -161,21 +161,21 @@ public:
 
   const FrictionBlocks& blocks() const { return blocks_; }
 
-  /// Measured friction over the twin's, by the rows of all points. Both directions have equal weight, so that a wrong
-  /// load has no effect. The deviation is the larger of that by the blocks and that by leaving out one point after the
-  /// other.
+  /// Measured friction over the twin's friction, from the rows of all points. Both directions have equal weight, so
+  /// that a wrong load has no effect. The deviation is the larger of two: that by FrictionBlocks, and that by a
+  /// jackknife over the points.
   FrictionRatio ratio() const { return ratio(points()); }
 
-  /// Measured friction over that of `reference`, at the speeds of both, because the twin's friction may rise with the
-  /// speed in another way than the joint's does.
+  /// Measured friction over that of `reference`, at the speeds that both have, because the friction of joint and twin
+  /// may rise differently with the speed.
   FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
   {
     return ratio(common(points(), reference));
   }
 
-  /// Returns the `points` whose speeds `reference` has too. Their `twin` becomes the friction of the reference: it is
-  /// multiplied by the reference's measured friction over its twin's. This factor is the mean over the reference's
-  /// points less than a bin away, weighted by rows and nearness.
+  /// Returns the `points` whose speeds `reference` has too, with the friction of the reference in `twin`: the twin's
+  /// friction times the mean of (measured / twin) over the reference's points less than a bin away. Rows and nearness
+  /// in speed weight the points in this mean.
   static std::vector<FrictionPoint> common(const std::vector<FrictionPoint>& points,
                                            const std::vector<FrictionPoint>& reference)
   {
@@ -203,7 +203,7 @@ public:
     return common;
   }
 
-  /// Means of the points in each bin of speed, weighted by their rows, in the order of their speeds.
+  /// Mean of the points in each bin of speed, weighted by the rows of the points, in the order of the speeds.
   static std::vector<FrictionPoint> merged(const std::vector<FrictionPoint>& points)
   {
     std::map<double, std::vector<FrictionPoint>>
@@ -220,7 +220,7 @@ public:
     return merged;
   }
 
-  /// Measured friction over the twin's, with equal weight of both directions; NaN: there is no point.
+  /// Measured friction over the twin's friction, with equal weight of both directions [-]; NaN: there is no point.
   static double ratioOf(const std::vector<FrictionPoint>& points)
   {
     const FrictionPoint backward = meanOf(points, -1.0);
@@ -260,7 +260,7 @@ private:
     return found;
   }
 
-  /// Standard deviation of the ratio by leaving out one point after the other; 0: there are fewer than two points.
+  /// Standard deviation of ratioOf(points) from its values without each single point [-]; 0: fewer than two points.
   static double jackknife(const std::vector<FrictionPoint>& points)
   {
     double sum = 0.0;
@@ -291,7 +291,7 @@ private:
   static constexpr double BINS_PER_DECADE = 10.0;
   static constexpr std::size_t BINS = 30;  // number of bins of each direction, up to 10 rad/s
 
-  std::array<Bin, 2 * BINS> bins_{};  // from the fastest negative speed to the fastest positive one
+  std::array<Bin, 2 * BINS> bins_{};  // bins from the fastest negative to the fastest positive speed
   FrictionBlocks blocks_;
 };
 }  // namespace hjt

@@ -12,7 +12,7 @@ namespace hjt
 {
 namespace
 {
-/// Prior standard deviation of a joint's response to common factors, over the response of the other joints [-].
+/// Prior standard deviation of a joint's response to common factors, relative to the response of the other joints [-].
 constexpr double OTHER_ANSWER = 0.5;
 
 double weightOf(const DatedFriction& recording)
@@ -20,7 +20,7 @@ double weightOf(const DatedFriction& recording)
   return 1.0 / (recording.deviation * recording.deviation);
 }
 
-/// Time, common friction and logarithm of the factor, minus their weighted means. Each row is a recording.
+/// Time, `common` and logarithm of `factor`, each minus its weighted mean over the recordings. Each row is a recording.
 Eigen::MatrixX3d aboutMeans(const std::vector<DatedFriction>& recordings)
 {
   Eigen::MatrixX3d rows(static_cast<Eigen::Index>(recordings.size()), 3);
@@ -68,7 +68,7 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
   const Eigen::Vector2d line = inverse * right;
   trend.slope = line[0];
   double left = 0.0;  // sum of the squared residuals over the squared deviations [-]
-  double fast = 0.0;  // variance of the slope by the parts of the deviations that change quickly
+  double fast = 0.0;  // variance of the slope by the parts of the deviations that are not slow
   double slow = 0.0;
   for (std::size_t i = 0; i < recordings.size(); ++i)
   {
@@ -80,7 +80,7 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
     const double rest = rows(static_cast<Eigen::Index>(i), 2) - line.dot(at);
     left += std::pow(rest / recording.deviation, 2);
   }
-  // Degrees of freedom: the recordings, less mean and slope, less the part of the response that the recordings
+  // Degrees of freedom: number of recordings - 2 for mean and slope - the part of the response that the recordings
   // determine.
   const double of_known_answer = inverse(1, 1) / (OTHER_ANSWER * OTHER_ANSWER);
   const double freedom = static_cast<double>(trend.recordings - 3) + of_known_answer;

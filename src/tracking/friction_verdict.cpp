@@ -16,30 +16,30 @@ namespace hjt
 namespace
 {
 /// Standard deviation of a sound drive's friction from one recording to the next, apart from the joints' common factor.
-/// It has two parts: a share [-], and a torque, which counts in small drives [N.m].
+/// It has two parts: REPEAT_SHARE, relative to the friction [-], and REPEAT_TORQUE, which counts in small drives [N.m].
 constexpr double REPEAT_SHARE = 0.03;
 constexpr double REPEAT_TORQUE = 0.22;
 
-/// Standard deviation of a sound drive's friction from recording to recording, if its group confirms the common factor.
+/// As REPEAT_SHARE [-] and REPEAT_TORQUE [N.m], if the other joints of the drive's group confirm the common factor.
 constexpr double WITNESSED_SHARE = 0.025;
 constexpr double WITNESSED_TORQUE = 0.1;
 
-/// Standard deviation of the load, as a share: 2 % by the masses of the links and 5 % by the gain [-].
+/// Relative standard deviation of the load: 2 % by the masses of the links and 5 % by the gain [-].
 constexpr double LOAD_SHARE = 0.054;
 
-/// Standard deviation of the friction that a controller expects of a sound joint, as a share [-].
+/// Relative standard deviation of the friction that a controller expects of a sound joint [-].
 constexpr double CONTROLLER_SHARE = 0.05;
 
-/// Least share of the friction that a fault of severity 1 leaves [-].
+/// Least friction factor that a fault of severity 1 causes [-].
 constexpr double LEAST_OF_FAULTS = 0.5;
 
 /// Friction factor below which a joint has no friction [-].
 constexpr double NO_FRICTION = 0.1;
 
-/// Largest half width of the interval of the factor's logarithm; with a wider interval the factor is too uncertain [-].
+/// Largest half width of the interval of a friction factor's logarithm with which the friction can be judged [-].
 constexpr double WIDEST = 0.4;
 
-/// Largest factor by which a change of temperature changes the friction [-].
+/// Largest common friction factor that a change of temperature can cause [-].
 constexpr double MAX_ARM_FRICTION = 2.5;
 
 constexpr std::size_t MIN_POINTS = 3;
@@ -47,11 +47,11 @@ constexpr std::size_t MIN_POINTS = 3;
 struct ReferenceRow
 {
   const char* name;
-  const char* text;  // the reference in a sentence
-  Figure figure;     // figure for the friction as a multiple of this reference
+  const char* text;  // name of the reference within a sentence
+  Figure figure;     // figure for friction / friction of this reference
 };
 
-/// The references, in the order of FrictionReference.
+/// Rows for the references, in the order of FrictionReference.
 constexpr std::array<ReferenceRow, 3> REFERENCES{
   { { "twin", "the twin's", Figure::FRICTION_OF_TWIN },
     { "controller", "the friction that the arm's controller expects", Figure::FRICTION_OF_CONTROLLER },
@@ -71,9 +71,10 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
   return 0.0;
 }
 
-using Gap = std::pair<Reason, std::string>;  // a reason and its sentence
+using Gap = std::pair<Reason, std::string>;  // a reason for a missing verdict, and this reason as a sentence
 
-/// Says why the points do not show a friction factor.
+/// Says why the points give no friction factor; SOUND: they give one. `is_to_own`: whether the reference is that of the
+/// joint itself.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
@@ -110,7 +111,7 @@ Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evide
   return { Reason::SOUND, "" };
 }
 
-/// Says why no drive can have this friction factor.
+/// Says why no drive can have this friction factor; SOUND: a drive can have the factor.
 Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>& points, LoadOrigin load)
 {
   if (factor.is_below_faults && factor.value < -LEAST_OF_FAULTS)
@@ -148,15 +149,16 @@ Gap whyImpossible(const FrictionFactor& factor, const std::vector<FrictionPoint>
   return { Reason::SOUND, "" };
 }
 
-/// Whether the joint's own rows do not show its friction, although the fit of all joints' currents may show it.
+/// Whether `reason` means that a joint's own rows do not show its friction, although the fit of the arm may show it.
 bool isUnshown(Reason reason)
 {
   return reason == Reason::NO_STEADY_MOTION || reason == Reason::NO_REFERENCE || reason == Reason::ONE_DIRECTION ||
          reason == Reason::ONE_SPEED || reason == Reason::TOO_SHORT || reason == Reason::FRICTION_SCATTER;
 }
 
-/// Standard deviation of the ratio to the mean of the reference's recordings, as a share [-]. `stated`: prior value of
-/// the standard deviation of the ratio of two recordings. It has the weight of STATED_COUNT recordings.
+/// Relative standard deviation of the ratio of a sound joint's friction in one recording to its mean in the recordings
+/// of the reference [-]. `stated`: assumed value for the ratio of two recordings [-], with the weight of STATED_COUNT
+/// recordings.
 double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;
@@ -167,17 +169,17 @@ double repeatDeviation(double stated, const OwnReference& own)
   return std::sqrt(of_one * (1.0 + 1.0 / count));
 }
 
-/// Standard deviation of the ratio to the joint's own earlier friction by the scatter of the rows, as a share [-]. It
-/// is the larger of two: by leaving out one speed after the other, and by the blocks of both recordings. Only half of
-/// the blocks' variance counts. The other half comes from the twin, whose friction rises with the speed in another way
-/// than the joint's, and is alike in both recordings.
+/// Relative standard deviation, by the scatter of the rows, of the ratio of friction to the joint's own earlier
+/// friction [-]: the larger of that by the jackknife over the speeds and that by the blocks of both recordings. Only
+/// half of the blocks' variance counts. The other half comes from friction of the twin that rises with the speed
+/// differently from the joint's friction, which is alike in both recordings.
 double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
 {
   const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);
   return std::max(ratio.of_points / std::max(std::abs(ratio.value), NO_FRICTION), of_blocks);
 }
 
-/// Standard deviation of the factor's logarithm by all its sources of uncertainty.
+/// Standard deviation of the logarithm of the friction factor by all sources of its uncertainty [-].
 double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, const JointContext& context,
                    FrictionReference reference)
 {
@@ -196,8 +198,8 @@ double deviationOf(const FrictionRatio& ratio, const FrictionBlocks& blocks, con
                    context.arm_deviation * context.arm_deviation);
 }
 
-/// Distance of the factor from 1, over the distance at which its whole interval would lie beyond the bound. If the
-/// result is larger than 1, the friction departs.
+/// Distance of (friction factor / arm_friction) from 1, over the distance at which its whole interval would lie beyond
+/// the bound 1 + more or 1 - less [-]. If the result is larger than 1, the friction departs.
 double departure(const FrictionFactor& factor, double arm_friction, double more, double less)
 {
   const double distance = factor.value / arm_friction - 1.0;
@@ -284,7 +286,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
 
 namespace
 {
-/// Sentences on the friction. `verdict` already holds the friction and its bounds.
+/// Sentences on the friction of a joint. `verdict` must already hold the friction and its bounds.
 std::string frictionText(const FrictionFactor& factor, bool is_fitted, const JointEvidence& evidence,
                          const JointContext& context, const Finding& finding, const Verdict& verdict)
 {
@@ -322,7 +324,7 @@ std::string frictionText(const FrictionFactor& factor, bool is_fitted, const Joi
 
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding)
 {
-  constexpr double MIN_CHANGE = 0.02;  // least change by a fault of severity 1 that the finding names, as a share [-]
+  constexpr double MIN_CHANGE = 0.02;  // least relative change of the indicator by a named fault of severity 1 [-]
   for (const Cause cause : causesThatMove(evidence.assessor().signatures(), indicator, way, MIN_CHANGE))
   {
     finding.causes.push_back({ cause, 0.0 });
@@ -339,7 +341,7 @@ Finding judgeFriction(const JointEvidence& evidence, const JointContext& context
   finding.subject = FindingSubject::FRICTION;
   const FrictionFactor factor = frictionFactor(evidence, context);
   const double of_kind = evidence.parameters().comparison.friction_tolerance;
-  // A joint without its own reference, in an arm whose other joints have theirs, does not use the fit.
+  // If the reference shows the friction of the other joints but not of this joint, the fit of the arm does not count.
   const FittedFriction fitted = context.own.is_unjudged ? FittedFriction() : context.fitted;
   bool is_fitted = isUnshown(factor.reason) && (fitted.departs() || fitted.isWithin(of_kind));
   verdict.friction_text = factor.why_not;

@@ -33,12 +33,12 @@ namespace hjt
 struct TorsionMean
 {
   double torque{};    ///< torque at the joint [N.m]
-  double forward{};   ///< mean torsion while turning forward; NaN: the joint never did so under this torque [rad]
-  double backward{};  ///< mean torsion while turning backward; NaN: the joint never did so under this torque [rad]
+  double forward{};   ///< mean torsion while turning forward; NaN: no such motion under this torque [rad]
+  double backward{};  ///< mean torsion while turning backward; NaN: no such motion under this torque [rad]
 };
 
 /// Torsion of a joint with two encoders, and torsion of its twin under the same loads, for torques up to
-/// output.load_torque_limit. Memory is fixed; `add` neither allocates nor throws.
+/// output.load_torque_limit. The memory has a fixed size; add() neither allocates nor throws.
 class TorsionPoints
 {
 public:
@@ -54,7 +54,7 @@ public:
   }
 
   /// Adds a row. `torque`: torque at the output [N.m]. `twin`: torsion of the twin [rad]. `torsion`: motor angle /
-  /// ratio - joint angle, with any zero [rad]. `position`, `speed`: those of the joint [rad], [rad/s].
+  /// ratio - joint angle, plus any constant [rad]. `position`, `speed`: angle and speed of the joint [rad], [rad/s].
   void add(double torque, double twin, double torsion, double position, double speed) noexcept
   {
     // Any zero is large beside the torsion, and the ridge of the fit would add a part of it to the compliance.
@@ -70,7 +70,8 @@ public:
 
   std::uint64_t rows() const { return static_cast<std::uint64_t>(regression_.rows()); }
 
-  /// Mean torsions in the order of their torques, with the zero of the twin's torsion.
+  /// Mean torsions in the order of the torques. An offset is subtracted, so that they are 0 where the twin's torsion is
+  /// 0.
   std::vector<TorsionMean> means() const
   {
     std::vector<TorsionMean> means;
@@ -87,8 +88,8 @@ public:
     return means;
   }
 
-  /// Measured torsion over the twin's under the same torques, by least squares with one offset for each direction of
-  /// turning [-]; NaN: the torque hardly varied.
+  /// Measured torsion over the twin's torsion under the same torques, by least squares with one offset for each
+  /// direction of turning [-]; NaN: the torque hardly varied.
   double compliance() const
   {
     return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(TWIN, 0);
@@ -107,10 +108,10 @@ public:
   }
 
 private:
-  static constexpr int STEPS = 142;            // number of steps up to the largest load
+  static constexpr int STEPS = 142;            // number of steps of the torque from 0 to the largest load [-]
   static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion for a result [rad]
-  // Columns of the regression. Column 0 is a constant, column 1 the direction of turning. The fit leaves out COSINE and
-  // SINE.
+  // Columns of the regression. Column 0 is a constant, column 1 the direction of turning. The fit does not use the
+  // columns COSINE and SINE.
   static constexpr int TWIN = 2;
   static constexpr int COSINE = 3;
   static constexpr int SINE = 4;
@@ -135,7 +136,7 @@ private:
   double step_;    // width of a step of the torque [N.m]
   double zero_{};  // torsion of the first row [rad]
   RunningRegression regression_;
-  std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by direction of turning, from the least torque on
+  std::array<std::array<Bin, 2 * STEPS + 1>, 2> bins_{};  // by direction of turning, then by torque in increasing order
 };
 
 /// Health of a measured joint from its own signals. After construction nothing allocates or throws.
@@ -146,15 +147,16 @@ public:
     : telemetry_(parameters.telemetry)
     , ratio_(nominalRatio(parameters.gear))
     , temperature_(parameters.input.temperature)
-    , monitor_(withoutWeight(parameters))  // the load of a sample contains the weight
+    , monitor_(withoutWeight(parameters))  // because the load of a sample contains the weight
     , assessor_(parameters)
   {
   }
 
-  /// Sets the reference of the sound joint. Without this call the first windows are the reference.
+  /// Sets the reference, from the joint when it was sound. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins) { assessor_.setReference(std::move(bins)); }
 
-  /// Takes a sample whose load includes weight and inertia. Returns true if it completed a window of the indicators.
+  /// Takes a sample whose load includes weight and inertia. Returns true if the sample completed a window of the
+  /// indicators.
   bool update(const MotionSample& sample) noexcept
   {
     SignalSample signal;
@@ -195,24 +197,24 @@ struct Contact
 {
   double since{};    ///< time when the contact began [s]
   double lasted{};   ///< duration of the contact without its pauses, which are shorter than ContactWatch::HOLD [s]
-  double largest{};  ///< largest magnitude of the torque at the joint above the usual torque [N.m]
+  double largest{};  ///< largest difference between residual torque and usual residual torque [N.m]
 };
 
-/// Detects that something touches the arm: the motion of a joint takes for a short time a torque that it does not
-/// usually take. A torque that persists becomes the usual torque. If the torque is unusual for more than a fifth of the
-/// time, the reason is friction, gain or payload, and not a contact.
+/// Detects that something touches the arm: for a short time the residual torque of a joint differs from its usual
+/// residual torque. A residual that persists becomes the usual one. If the residual is unusual for more than a fifth of
+/// the motion, the reason is friction, gain or payload, and not a contact.
 ///
-/// The mean residual over MEAN must differ from the usual residual of the direction of motion for LASTING. The
-/// difference must exceed the sum of half of the friction, 5 % of the load and 2 % of the largest load. If rows come
-/// rarely, the window of their rates spreads a jolt, and LASTING is longer by this spread. Memory is fixed; nothing
-/// allocates or throws.
+/// A contact begins when the residual, averaged over MEAN, has differed for LASTING from the usual residual of this
+/// direction of motion by more than half of the friction + 5 % of the load + 2 % of the largest load. If the rows are
+/// far apart, the window of their rates spreads a jolt over a longer time, and LASTING is longer by as much. The memory
+/// has a fixed size; nothing allocates or throws.
 class ContactWatch
 {
 public:
-  static constexpr double MEMORY = 10.0;  ///< time of motion in one direction over which the usual torque adapts [s]
+  static constexpr double MEMORY = 10.0;  ///< time of motion in one direction over which the usual residual adapts [s]
   static constexpr double HOLD = 10.0;    ///< time after a contact in which the joint is not judged [s]
 
-  explicit ContactWatch(double largest_load) : largest_load_(largest_load) {}  ///< [N.m]
+  explicit ContactWatch(double largest_load) : largest_load_(largest_load) {}  ///< largest load of the joint [N.m]
 
   void reset() noexcept { *this = ContactWatch(largest_load_); }
 
@@ -222,7 +224,7 @@ public:
     constexpr double MEAN = 0.1;     // time over which the residual is averaged [s]
     constexpr double SETTLED = 0.3;  // time of motion in one direction after which presliding is over [s]
     constexpr double LASTING = 0.1;  // least time for which the difference must persist [s]
-    constexpr double KNOWN = 2.0;    // time of motion in one direction after which the usual torque is known [s]
+    constexpr double KNOWN = 2.0;    // time of motion in one direction after which the usual residual is known [s]
     constexpr double OF_FRICTION = 0.5;
     constexpr double OF_LOAD = 0.05;
     constexpr double OF_LARGEST = 0.02;
@@ -265,7 +267,7 @@ public:
 
   bool hasSeen() const noexcept
   {
-    constexpr double OFTEN = 0.2;  // share of the motion from which on unusual torques are no contact [-]
+    constexpr double OFTEN = 0.2;  // share of the motion from which on an unusual residual is no contact [-]
     return touched_ > 0.0 && touched_ < OFTEN * (usual_[0].time + usual_[1].time);
   }
   bool isTouching() const noexcept { return hasSeen() && time_ == last_; }  ///< whether the last row shows a contact
@@ -287,7 +289,7 @@ private:
   double moved_{};                // time of motion in the direction way_ [s]
   double mean_{};                 // mean difference between residual and usual residual [N.m]
   double beyond_{};               // time for which the mean difference has exceeded its bound [s]
-  std::array<Usual, 2> usual_{};  // by direction
+  std::array<Usual, 2> usual_{};  // for backward and forward motion
   double last_{ -std::numeric_limits<double>::infinity() };  // time of the last row that shows a contact [s]
   double touched_{};                                         // duration of all contacts [s]
   Contact contact_;
@@ -310,9 +312,9 @@ struct JudgedWindow
   Assessment assessment;
 };
 
-constexpr double LEAST_MOTION = 0.02;  ///< least range of a joint's angles; with a smaller one it is at rest [rad]
+constexpr double LEAST_MOTION = 0.02;  ///< range of angles below which a joint counts as at rest [rad]
 
-/// Number of rows and ranges of the measured motion.
+/// Ranges and numbers of rows of the measured motion of a joint.
 struct MotionReach
 {
   bool isAtRest() const { return most_angle - least_angle < LEAST_MOTION; }
@@ -321,25 +323,25 @@ struct MotionReach
   std::uint64_t impossible{};        ///< rows with a current or load that the joint cannot have
   std::uint64_t motor_rows{};        ///< rows with a motor angle
   std::uint64_t temperature_rows{};  ///< rows with a received temperature
-  std::uint64_t touched_rows{};  ///< rows that do not count, because of a contact less than ContactWatch::HOLD before
-  double begin{};                ///< time of the first row [s]
-  double end{};                  ///< time of the last row [s]
-  double sampled{};              ///< sum of the steps from row to row, without gaps [s]
-  double least_load{};           ///< least load [N.m]
-  double most_load{};            ///< largest load [N.m]
-  double least_angle{};          ///< least angle [rad]
-  double most_angle{};           ///< largest angle [rad]
+  std::uint64_t touched_rows{};      ///< rows during a contact or less than ContactWatch::HOLD after it; do not count
+  double begin{};                    ///< time of the first row [s]
+  double end{};                      ///< time of the last row [s]
+  double sampled{};                  ///< sum of the steps from row to row, without gaps [s]
+  double least_load{};               ///< least load [N.m]
+  double most_load{};                ///< largest load [N.m]
+  double least_angle{};              ///< least angle [rad]
+  double most_angle{};               ///< largest angle [rad]
 };
 
 /// Source of the load in the samples.
 enum class LoadOrigin
 {
-  CONFIGURED,  ///< weight and inertia by the joint's parameters
+  CONFIGURED,  ///< configured weight and inertia of the joint
   RECORDED,
-  ARM  ///< links and payload, by rigid-body dynamics
+  ARM  ///< rigid-body dynamics of the arm's links and payload
 };
 
-/// The groups of a joint's parameters that evidence and verdict use.
+/// Groups of a joint's parameters that JointEvidence and the verdict use.
 struct EvidenceParameters
 {
   explicit EvidenceParameters(const Parameters& of)
@@ -373,7 +375,8 @@ public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   JointEvidence(const Parameters& parameters, LoadOrigin load);
 
-  /// Sets the reference of the signals from the sound joint. Without this call the first windows are the reference.
+  /// Sets the reference of the signals, from the joint when it was sound. Without this call the first windows are the
+  /// reference.
   void setReference(std::vector<ReferenceBin> bins);
 
   /// Result of update() for a row.
@@ -385,7 +388,8 @@ public:
     WINDOW  ///< the row counts and completed a window of the signals
   };
 
-  /// Takes a sample whose load includes weight and inertia. `fits`: whether its signals count.
+  /// Takes a sample whose load includes weight and inertia. `fits`: whether the sample counts for the windows of the
+  /// signals.
   Row update(const MotionSample& sample, bool fits = true) noexcept
   {
     predict(sample);
@@ -399,7 +403,7 @@ public:
   void forget() noexcept;
   /// Clears everything, because rows of another recording follow.
   void reset() noexcept;
-  /// Clears only the evidence on the signals.
+  /// Clears only the windows of the signals.
   void resetSignals() noexcept { health_.reset(); }
 
   LoadOrigin loadOrigin() const { return load_; }
@@ -409,8 +413,8 @@ public:
   const MotionPrediction& predicted() const { return predicted_; }  ///< prediction for the last row
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
-  /// Friction with FrictionPoint::twin as the friction that the arm's controller expects: the current is then its
-  /// target current. Only rows with a target current count.
+  /// As friction(), but FrictionPoint::twin is the friction that the arm's controller expects, from its target current.
+  /// Only rows with a target current count.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return torsion_; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
@@ -422,12 +426,13 @@ public:
   double currentRms() const { return rms(MEASURED); }     ///< root mean square of the measured current [A]
   double predictedRms() const { return rms(PREDICTED); }  ///< root mean square of the predicted current [A]
   double residualRms() const { return rms(RESIDUAL); }    ///< root mean square of the residual [A]
-  /// Standard deviation of the residual. An unknown constant load does not change it [A].
+  /// Standard deviation of the residual, which an unknown constant load does not change [A].
   double residualSpread() const;
-  /// Root mean square of the residual without the best constant and the best multiple of the predicted friction [A]. So
-  /// a constant load, wear and cold grease do not count.
+  /// Root mean square of the residual [A] after subtraction of the constant and of the multiple of the predicted
+  /// friction that fit best. So a constant load, wear and cold grease do not count.
   double unexplainedRms() const;
-  /// Measured over predicted current for load and inertia, without friction [-]; NaN: this current is too small.
+  /// Measured over predicted current for load and inertia, without the current for friction [-]; NaN: the current for
+  /// load and inertia is too small.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< mean temperature of the rows [degC]
   /// Whether more than half of the rows had a received temperature.
@@ -441,14 +446,14 @@ public:
   std::uint64_t assessedWindows() const { return now_.assessed; }
   /// The last window at the worst level; none: no window was judged.
   const std::optional<JudgedWindow>& worst() const { return now_.worst; }
-  /// The last assessment with too few windows for a verdict; none: there is no such assessment.
+  /// The last assessment that had too few windows for a verdict; none: there is no such assessment.
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }
   double alarmTime() const { return now_.alarm_time; }  ///< time of the first window whose level is not OK [s]
   Cause cause() const;                                  ///< most frequent cause of the windows whose level is not OK
   double causeShare() const;  ///< share of the windows not at level OK that have the cause cause() [-]
 
 private:
-  static constexpr int LOAD_STEPS = 568;  // number of steps of the load in the histogram
+  static constexpr int LOAD_STEPS = 568;  // number of steps of the load in the histogram [-]
   enum Product : int
   {
     ONE,
@@ -460,7 +465,7 @@ private:
   };
   using Products = Eigen::Matrix<double, PRODUCTS, PRODUCTS>;
 
-  /// Sums over the rows.
+  /// Sums over the rows that count.
   struct Sums
   {
     MotionReach reach;
@@ -468,8 +473,9 @@ private:
     FrictionPoints beside_controller;
     std::array<std::uint64_t, LOAD_STEPS + 2> loads{};  // histogram of the load's magnitude
     double temperatures{};                              // sum of the temperatures [degC]
-    Products products{ Products::Zero() };              // products of 1 and the currents with each other [A], [A^2]
-    /// Products of 1, predicted friction, rest of the prediction and residual, in rows that show friction [A], [A^2].
+    Products products{ Products::Zero() };              // products of the quantities in Product with each other [A^2]
+    /// Products with each other of 1 and of the currents for predicted friction, rest of the prediction and residual
+    /// [A^2], summed over the rows that show friction.
     Eigen::Matrix4d gains{ Eigen::Matrix4d::Zero() };
     double gains_time{};  // duration of the rows in `gains` [s]
     std::uint64_t assessed{};

@@ -16,7 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// If the wave generator must turn farther than this, it is inserted anew at the new angle [rad].
+/// Largest turn of the wave generator from one solution to the next; for a larger one the class inserts it anew [rad].
 constexpr double LONG_WAY = 0.5;
 }  // namespace
 
@@ -41,7 +41,7 @@ MeasuredGear::MeasuredGear(const Parameters& parameters)
 bool MeasuredGear::moveTo(double position, double joint_torque) noexcept
 {
   constexpr int MAX_ROUNDS = 5;
-  constexpr double CLOSE = 1e-6;  // largest error of the motor's angle [rad]
+  constexpr double CLOSE = 1e-6;  // largest change of the motor angle in the last round [rad]
   if (!std::isfinite(position) || !(std::abs(joint_torque) <= torque_limit_))
   {
     return false;
@@ -67,7 +67,8 @@ bool MeasuredGear::moveTo(double position, double joint_torque) noexcept
   return true;
 }
 
-/// Finds the equilibrium of the ring at an angle of the wave generator. Returns false if there is none.
+/// Finds the equilibrium of the ring at an angle of the wave generator [rad] under a torque on the output [N.m].
+/// Returns false if the solver finds none.
 bool MeasuredGear::solve(double motor_angle, double joint_torque) noexcept
 {
   const std::int64_t shift = teeth_are_alike_ ? static_cast<std::int64_t>(std::floor(motor_angle / pitch_)) : 0;
@@ -99,7 +100,7 @@ LobeLoads MeasuredGear::lobes() const noexcept
                      ring_.position().wave_generator_angle });
 }
 
-/// Number of the drive's tooth that the first tooth of the ring stands for.
+/// Number of the tooth of the drive that tooth 0 of the ring stands for.
 int MeasuredGear::firstTooth() const noexcept
 {
   const std::int64_t teeth = tooth_angles_.size();

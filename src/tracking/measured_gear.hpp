@@ -14,11 +14,10 @@
 
 namespace hjt
 {
-/// The gear of a measured joint, with all teeth in equilibrium at the measured angle and the present torque of the
-/// joint.
+/// Gear of a measured joint, with all teeth in equilibrium at the measured angle of the joint under its present torque.
 ///
-/// If all teeth are alike, the gear repeats itself each time the wave generator turns by a tooth pitch p of the
-/// flexspline and the output by p / ratio. Only the numbers of the teeth change. The class then solves the ring within
+/// If all teeth are alike, the equilibrium is the same after the wave generator has turned by a tooth pitch p of the
+/// flexspline and the output by p / ratio; only the numbers of the teeth change. The class then solves the ring within
 /// one pitch and renumbers the teeth of the result. After construction nothing throws or allocates.
 class MeasuredGear
 {
@@ -46,9 +45,9 @@ public:
   double residual() const noexcept { return residual_; }  ///< largest unbalanced force on a point of the ring [N]
   LobeLoads lobes() const noexcept;
 
-  /// `forces`: made by Twin::makeToothForces.
+  /// Writes the forces on the teeth to `forces`, which Twin::makeToothForces must have made.
   void fill(ToothForces& forces) const noexcept;
-  /// `stress`: must have the size for the gear's teeth.
+  /// Writes the stress at the teeth to `stress`, which must have the size for the gear's teeth.
   void fill(ToothStress& stress) const noexcept;
 
 private:
@@ -61,13 +60,13 @@ private:
   const bool teeth_are_alike_;
   const double pitch_;  // tooth pitch of the flexspline [rad]
   const double ratio_;
-  const double torque_limit_;     // [N.m]
+  const double torque_limit_;     // output.load_torque_limit [N.m]
   Eigen::VectorXd tooth_angles_;  // angles of the teeth at rest [rad]
-  std::int64_t shift_{};          // number of pitches by which the ring has turned less than the drive
+  std::int64_t shift_{};          // number of pitches from the angles of ring_ to those of the drive
   double position_{};
   double motor_angle_{};
   double torsion_{};  // torsion of the ring [rad]
-  bool is_lost_{};    // whether the ring is in no equilibrium
+  bool is_lost_{};    // whether the last solution failed, so that ring_ is in no equilibrium
   double residual_{};
 };
 }  // namespace hjt

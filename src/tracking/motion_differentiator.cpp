@@ -48,8 +48,8 @@ MotionSample MotionDifferentiator::fit(std::uint64_t index) const noexcept
   static_cast<MotionRow&>(sample) = rows_[index % ROOM];
   sample.after_gap = index > 0 && at(index - 1).segment != centre.segment;
 
-  // Sums of the powers of the time t, and of their products with the angle. The unit of t is the half width, so that
-  // all sums have the same size.
+  // Sums of the powers of the time t, and sums of the products of these powers with the angle. The unit of t is the
+  // half width, so that all sums are of the same order of magnitude.
   int rows = 0;
   std::array<double, 4> powers{};
   std::array<double, 3> products{};

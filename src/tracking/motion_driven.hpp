@@ -21,7 +21,7 @@
 
 namespace hjt
 {
-/// Motor current for an effort of 1 in the unit `effort` [A], [A/(N.m)].
+/// Motor current for an effort of 1 A or 1 N.m, in the unit `effort` [A].
 inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) noexcept
 {
   const double gain = parameters.telemetry.torque_per_current;
@@ -37,7 +37,7 @@ inline double currentPerEffort(EffortUnit effort, const Parameters& parameters) 
   return 1.0;
 }
 
-/// Motor current for an effort of 1 in the configured unit [A], [A/(N.m)].
+/// Motor current for an effort of 1 A or 1 N.m, in the configured unit [A].
 inline double currentPerEffort(const Parameters& parameters) noexcept
 {
   return currentPerEffort(parameters.telemetry.effort, parameters);
@@ -45,12 +45,14 @@ inline double currentPerEffort(const Parameters& parameters) noexcept
 
 /// Ripple of the motor torque that the kinematic error causes, as a torque at the joint.
 ///
-/// A load that does not move would feel each line as a torque K e: stiffness of the joint times its kinematic error.
-/// The load moves, with the resonance w0 on this stiffness and the damping z, so the gear feels
+/// On a load that does not move, each line would be a torque K e: stiffness K of the joint times amplitude e of the
+/// line. A real load oscillates on this stiffness, with the resonance w0 and the damping ratio z, so the torque T of
+/// the line in the gear is
 ///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed.
-/// At rest there is no ripple, because the load follows the error. There are four lines: two and four waves per turn of
-/// the motor against the circular spline, which turns with the output, and the same against the flexspline. The lines
-/// are known up to the speed telemetry.ripple_fastest. Beyond this speed the class has no ripple.
+/// At rest there is no ripple, because the load follows the kinematic error. There are four lines: two and four waves
+/// per turn of the motor against the circular spline, which turns with the output, and two and four waves per turn
+/// against the flexspline. The lines are known up to the joint speed telemetry.ripple_fastest. Above this speed at()
+/// returns 0.
 class TorqueRipple
 {
 public:
@@ -84,18 +86,20 @@ public:
     return sum;
   }
 
-  /// Orders per turn of the joint: two waves against circular spline and flexspline, then four waves against each.
+  /// Orders of the lines per turn of the joint: two waves against circular spline and flexspline, then four waves
+  /// against each.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment; `response`: resonance [Hz], damping [-], lag [s].
+  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment [rad^2/s^2]. `response`: resonance [Hz], damping ratio [-],
+  /// lag [s].
   static std::complex<double> stiffness(double w, const double* response) noexcept
   {
     const double natural = TWO_PI * response[0];
     return { natural * natural - w * w, 2.0 * response[1] * natural * w };
   }
 
-  /// Torque that the gear feels of a line of 1 N.m, for each line. The real part belongs to the line's cosine, the
-  /// imaginary part to its sine.
+  /// Torque in the gear by a line with K e = 1 N.m, for each line. The real part is that of a cosine line, the
+  /// imaginary part that of a sine line.
   static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
   {
     Waves turned;
@@ -104,7 +108,7 @@ public:
     {
       const double w = orders[i] * velocity;
       const std::complex<double> inverse = std::conj(stiffness(w, response));
-      // The orders of the last two lines are twice those of the first two.
+      // The orders of the last two lines are twice those of the first two lines.
       turned[i] = i < 2 ? std::polar(1.0, orders[i] * position - w * response[2]) : turned[i - 2] * turned[i - 2];
       felt[i] = -w * w / std::norm(inverse) * inverse * turned[i];
     }
@@ -115,15 +119,14 @@ private:
   Orders orders_;
   Waves lines_;                     // each line as cosine + i sine [N.m]
   std::array<double, 3> response_;  // resonance [Hz], damping [-], lag [s]
-  double fastest_;                  // largest speed with ripple; negative: the joint has no line [rad/s]
+  double fastest_;                  // largest joint speed with ripple; negative: the joint has no line [rad/s]
 };
 
 /// Share of the friction that has built up, between -1 and 1. After a reversal the share builds up over an angle of the
-/// motor (function `mobilised`). It is the sum of two parts. The part of the contacts builds up over
-/// telemetry.presliding_angle. While the joint stands, this part decays with the time constant RELAXATION, as the
-/// current of standing joints does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part,
-/// telemetry.lasting_share of the whole, builds up over LASTING_ANGLE and does not decay. Noise of an encoder at
-/// standstill hardly changes it.
+/// motor (function `mobilised`). The share has two parts. The part of the contacts builds up over
+/// telemetry.presliding_angle. It decays with the time constant RELAXATION, as the current of standing joints does (UR5
+/// CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over
+/// LASTING_ANGLE and does not decay. Noise of an encoder at standstill hardly changes the lasting part.
 class Presliding
 {
 public:
@@ -159,19 +162,19 @@ inline double ownTorque(const Load& load, const MotionSample& sample) noexcept
   return load.inertia() * sample.acceleration - load.gravityTorque(sample.position);
 }
 
-/// Motor torque and motor current that a sound joint needs for a motion.
+/// Motor torque and motor current that a sound joint needs for a motion, at one instant.
 struct MotionPrediction
 {
   double motor_torque{};     ///< torque at the motor shaft [N.m]
   double current{};          ///< current of the motor [A]
   double friction_torque{};  ///< friction of the whole drive at the joint, with the sign of the motion [N.m]
   double friction_limit{};   ///< largest possible friction at this speed and load [N.m]
-  double band{};  ///< half width of the current's band, by the share of the friction that has not built up [A]
+  double band{};             ///< half width of the band: current of the friction that has not built up [A]
 
   /// Whether nearly all of the friction has built up, so that the current shows the friction.
   bool tellsFriction() const
   {
-    constexpr double LEFT = 0.05;  // largest share of the friction that has not built up [-]
+    constexpr double LEFT = 0.05;  // largest friction that has not built up, over friction [-]
     return friction_limit - std::abs(friction_torque) < LEFT * std::abs(friction_torque);
   }
 };
@@ -181,8 +184,8 @@ struct MotionPrediction
 ///
 ///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio; a, v: acceleration and speed of the joint; J_m: inertia of motor and wave generator
-///       T_f friction at the motor shaft (FrictionMap); s: the share of it that has built up (Presliding)
-///       T_r torque ripple by the kinematic error (TorqueRipple); gain, offset: those of the telemetry
+///       T_f friction at the motor shaft (FrictionMap); s: share of T_f that has built up (Presliding)
+///       T_r torque ripple by the kinematic error (TorqueRipple); gain, offset: torque_per_current, current_offset
 ///
 /// The load of a sample includes all torques at the output, with inertia and weight. A step takes some hundred
 /// nanoseconds; nothing allocates.
@@ -211,7 +214,7 @@ public:
     return bear(sample);
   }
 
-  /// Makes the part of a step that needs no load. It makes no prediction.
+  /// Makes the part of a step that needs no load. bear() makes the other part.
   void move(const MotionSample& sample) noexcept
   {
     if (!started_ || sample.after_gap)
@@ -225,7 +228,7 @@ public:
     predicted_at_ = std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// The prediction for the last sample, after move(), with the load and vibration of the sample.
+  /// The prediction for `sample`, with its load and vibration. Call move() for this sample before.
   MotionPrediction bear(const MotionSample& sample) noexcept
   {
     last_ = sample;
@@ -239,7 +242,7 @@ public:
     return temperature == predicted_at_ ? predicted_ : predict(temperature);
   }
 
-  /// Motor current for an effort of 1 by the joint's telemetry parameters [A], [A/(N.m)].
+  /// Motor current for an effort of 1 A or 1 N.m, in the configured unit [A].
   double currentPerEffort() const noexcept { return current_per_effort_; }
 
   /// Friction [N.m] at the joint in steady motion, >= 0, at a speed [rad/s], load [N.m] and temperature [degC].
@@ -248,7 +251,8 @@ public:
     return ratio_ * friction_.atViscosity(ratio_ * velocity, load, viscosity(temperature)).sum();
   }
 
-  /// Torque of the configured weight and inertia, for recordings without a load [N.m].
+  /// Torque of the configured weight and inertia in a motion, for recordings without a load; > 0 resists positive
+  /// motion [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
 private:
@@ -279,7 +283,7 @@ private:
     return known_[0].viscosity;
   }
 
-  /// Viscosity of the grease at the last temperature.
+  /// Viscosity of the grease [m^2/s] at a temperature [degC].
   struct Viscosity
   {
     double temperature{ std::numeric_limits<double>::quiet_NaN() };
@@ -291,9 +295,9 @@ private:
   TorqueRipple ripple_;
   Load load_;
   TelemetryParameters telemetry_;
-  double inertia_;  // inertia of motor and wave generator that the load does not contain [kg.m^2]
+  double inertia_;  // inertia of motor and wave generator - telemetry.inertia_in_load [kg.m^2]
   double ratio_;
-  double temperature_;  // temperature for samples without a temperature [degC]
+  double temperature_;  // assumed temperature of samples without one [degC]
   double current_per_effort_;
   MotionSample last_;
   MotionPrediction predicted_;  // prediction for the last sample at the temperature predicted_at_
@@ -302,12 +306,12 @@ private:
   bool started_{};
 };
 
-/// The whole twin driven by a measured motor current in open loop: predicts the motion. Its differences from the robot
-/// grow with time.
+/// The whole twin driven by a measured motor current in open loop: predicts the motion. The differences between twin
+/// and robot grow with time.
 ///
 /// The current of a sample drives the twin from the sample's time on. The weight is that at the measured angle, so that
-/// it stays right if the twin drifts away. The twin starts at rest at the measured angle, and does so again after a
-/// gap.
+/// the weight stays right if the twin's angle drifts away. At the first sample, and at the first one after a gap, the
+/// twin starts at rest at the measured angle.
 class TorqueDriven
 {
 public:
@@ -329,8 +333,8 @@ public:
     double friction_torque{};  ///< friction of the whole drive at the joint, > 0 against the motion [N.m]
   };
 
-  /// Returns the state of the joint at the time of `sample`. From this time on its current and load act.
-  /// @param load external torque at the output, without the configured weight and inertia [N.m]
+  /// Returns the state of the twin's joint at the time of `sample`. From this time on the current of `sample`, and
+  /// `load`, act. @param load external torque at the output, without the configured weight and inertia [N.m]
   Motion step(const MotionSample& sample, double load) noexcept
   {
     const Stamp stamp = std::llround(1e9 * sample.time);
@@ -366,9 +370,9 @@ private:
   Load load_;
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;       // temperature for samples without a temperature [degC]
-  double start_position_{};  // angle of the joint at which the twin's angle is 0 [rad]
+  double temperature_;       // assumed temperature of samples without one [degC]
+  double start_position_{};  // measured angle of the joint at which the twin's output angle is 0 [rad]
   bool started_{};
-  std::uint64_t solver_failures_{};  // number of solver failures before the last start
+  std::uint64_t solver_failures_{};  // number of solver failures before the last start of the twin [-]
 };
 }  // namespace hjt

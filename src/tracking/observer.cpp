@@ -14,12 +14,12 @@ namespace hjt
 {
 namespace
 {
-constexpr double DAMPING = 0.02;    // damping of the torsional swing, as a share of the critical damping [-]
+constexpr double DAMPING = 0.02;    // damping of the torsional oscillation over the critical damping [-]
 constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations [-]
 // Standard deviations of the state at the start.
 constexpr double FIRST_TORSION = 1.0e-4;        // standard deviation of the torsion [rad]
 constexpr double FIRST_SPEED = 1.0;             // standard deviation of the speed of the joint [rad/s]
-constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // the first disturbance may be as large as its growth in this time [s]
+constexpr double FIRST_DISTURBANCE_TIME = 1.0;  // time in which noise makes a disturbance as large as the first one [s]
 
 using Vector = ObserverPiece::Vector;
 using Matrix = ObserverPiece::Matrix;
@@ -30,7 +30,7 @@ ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, do
 {
   ObserverPiece piece;
   piece.stiffness = stiffness;
-  // Damping coefficient of the swing of both bodies against each other, seen from the output.
+  // Damping coefficient of the torsional oscillation of motor and output, seen from the output [N.m.s/rad].
   const double reduced = 1.0 / (1.0 / (inertia[0] * ratio * ratio) + 1.0 / inertia[1]);
   const double damping = 2.0 * DAMPING * std::sqrt(stiffness * reduced);
 
@@ -81,7 +81,8 @@ Observer::Observer(const Parameters& parameters)
   }
 }
 
-/// Starts at rest under the load. The covariance is so large that the first rows determine speed and disturbance.
+/// Starts the filter at rest under the measured load. The covariance is so large that the first rows determine speeds
+/// and disturbance torque.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
@@ -104,7 +105,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   const double gear = curve_.torque(torsion);
   const ObserverPiece& piece = pieces_[curve_.pieceAt(torsion)];
 
-  // Torque of the torsion curve minus that of the linear piece (stiffness times torsion).
+  // Torque of the torsion curve - torque of the linear model (stiffness x torsion) [N.m].
   const double beyond = gear - piece.stiffness * torsion;
   const double output_torque = load_.gravityTorque(state_[2]) - load_torque;
   const Vector free =
@@ -112,7 +113,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
 
   const double most = friction_.at(state_[1], gear, temperature).sum();
   const double by_friction = piece.input(1, 0);
-  double taken = 1.0 / by_friction;  // of a held motor: friction over its speed without friction [N.m.s/rad]
+  double taken = 1.0 / by_friction;  // holding friction over the speed without friction [N.m.s/rad]
   if (presliding_angle_ > 0.0)
   {
     taken = preslide(most, free[1], by_friction);
@@ -127,7 +128,7 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   Matrix transition = piece.transition;
   if (sticking_)
   {
-    // The friction takes away the speed that the motor would have. This is a linear map too.
+    // The friction removes the speed that the motor would have without it, which is a linear map of the state too.
     Matrix held = Matrix::Identity();
     held.col(1) -= piece.input.col(0) * taken;
     transition = held * transition;
@@ -140,9 +141,9 @@ void Observer::predict(double motor_torque, double load_torque, double temperatu
   now_ += STEP;
 }
 
-/// Sets the friction that has built up over the presliding angle until the end of a step. `most`: largest friction
-/// [N.m]. `free`: speed of the motor at the end without friction [rad/s]. `response`: speed that a friction of 1 N.m
-/// takes away [rad/s]. Returns the slope of the friction over `free` [N.m.s/rad].
+/// Sets friction_now_ to the friction that has built up over the presliding angle at the end of a step. `most`: largest
+/// friction [N.m]. `free`: motor speed at the end of the step without friction [rad/s]. `response`: speed that a
+/// friction of 1 N.m removes in the step [rad/(N.m.s)]. Returns the slope of the friction over `free` [N.m.s/rad].
 double Observer::preslide(double most, double free, double response) noexcept
 {
   constexpr int BISECTIONS = 40;
@@ -162,7 +163,8 @@ double Observer::preslide(double most, double free, double response) noexcept
   return growth / (1.0 + response * growth);
 }
 
-/// Corrects the state by one measured angle. Returns measured - expected angle [rad].
+/// Corrects the state by one measured angle with the standard deviation `noise` [rad]. Returns measured - expected
+/// angle [rad].
 double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
 {
   const double innovation = measured - state_[angle];
@@ -186,7 +188,7 @@ Observation Observer::step(const Measurement& measurement) noexcept
   {
     predict(motor_torque, load_torque, temperature);
   }
-  // The time of the row differs from that of the state by at most half a step.
+  // The time of the measurement differs from that of the state by at most half a step.
   const double beside = measurement.time - now_;
   if (std::isfinite(measurement.motor_angle))
   {

@@ -13,8 +13,9 @@
 
 namespace hjt
 {
-/// Linear model of the joint with one local stiffness, for one step: x' = transition x + input (motor torque, output
-/// torque). x: angle and speed of the motor, angle and speed of the output, disturbance torque at the motor.
+/// Linear model of the joint over one step, with one local stiffness: (x after the step) = transition * x + input *
+/// (motor torque, output torque). The state x is: angle and speed of the motor, angle and speed of the output,
+/// disturbance torque at the motor.
 struct ObserverPiece
 {
   using Vector = Eigen::Matrix<double, 5, 1>;
@@ -31,18 +32,20 @@ struct ObserverPiece
   double stiffness{};  ///< stiffness at the output [N.m/rad]
   Matrix transition;
   Eigen::Matrix<double, 5, 2> input;
-  Matrix process;  ///< covariance of the process noise over a step
+  Matrix process;  ///< covariance of x by the process noise of a step
 };
 
-/// Makes the exact step with one stiffness. `inertia`: those of motor and output [kg.m^2]. `step`: length of the step
-/// [s]. The torsional swing has two per cent of the critical damping, so that a swing too fast for the rows decays.
+/// Integrates the linear model of the joint exactly over one step. `inertia`: inertias of motor and output [kg.m^2].
+/// `stiffness`: stiffness at the output [N.m/rad]. `step`: length of the step [s]. The torsional oscillation has two
+/// per cent of the critical damping, so that an oscillation that is too fast for the rows decays.
 ObserverPiece makeObserverPiece(const Eigen::Vector2d& inertia, double ratio, double stiffness, double step,
                                 const ObserverParameters& noise);
 
-/// Kalman gain of one measured angle. Replaces the covariance by the covariance after the measurement (Joseph's form).
+/// Returns the Kalman gain for one measured angle with the standard deviation `noise` [rad]. Replaces `covariance` by
+/// the covariance after the measurement (Joseph's form).
 ObserverPiece::Vector takeAngle(ObserverPiece::Matrix& covariance, ObserverPiece::State angle, double noise) noexcept;
 
-/// Measurements at one instant.
+/// Measurements on a joint at one instant.
 struct Measurement
 {
   double time{};          ///< time of the measurements [s]
@@ -50,42 +53,43 @@ struct Measurement
   double load_torque{};   ///< external torque at the output, > 0 resists positive motion [N.m]
   double output_angle{};  ///< angle by the encoder at the output [rad]
   double motor_angle{};   ///< angle by the encoder at the motor; NaN: no such encoder [rad]
-  bool restarted{};       ///< first measurement after a gap, which replaces the state
+  bool restarted{};       ///< whether this measurement is the first one after a gap, which replaces the state
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };  ///< temperature of the drive; NaN: as configured [degC]
 };
 
-/// Estimate after a measurement.
+/// Estimate of the observer after a measurement.
 struct Observation
 {
   double motor_angle{};      ///< motor angle; output angle and load at the start define its zero [rad]
-  double motor_velocity{};   ///< [rad/s]
+  double motor_velocity{};   ///< speed of the motor [rad/s]
   double output_angle{};     ///< [rad]
-  double output_velocity{};  ///< [rad/s]
+  double output_velocity{};  ///< speed of the output [rad/s]
   double joint_torque{};     ///< torque in the gear, at the output [N.m]
   double friction_torque{};  ///< friction of a sound joint at the motor, with the sign of the motion [N.m]
-  double residual_torque{};  ///< torque at the motor beyond that of a sound joint, which explains the measurement [N.m]
-  double residual_band{};    ///< three standard deviations of a sound joint's residual with the configured noise [N.m]
+  double residual_torque{};  ///< torque at the motor that a sound joint does not explain [N.m]
+  double residual_band{};    ///< three standard deviations of residual_torque in a sound joint [N.m]
   double innovation{};       ///< measured - predicted output angle [rad]
   double innovation_band{};  ///< three standard deviations of the innovation [rad]
-  bool sticking{};  ///< friction holds the motor: the residual then says nothing, because any torque within it fits
+  bool sticking{};           ///< whether friction holds the motor; residual_torque then has no meaning
 };
 
-/// An extended Kalman filter for angle and speed of motor and output and for a disturbance torque. The measured motor
-/// torque drives the model, and the encoders correct it. The filter advances in steps of STEP, so that rows may be
-/// uneven in time or missing.
+/// Extended Kalman filter for a disturbance torque, and for angle and speed of motor and output. The measured motor
+/// torque drives the model, and the measured angles correct the state. The filter advances in steps of STEP, so that
+/// the times between rows may differ, and rows may be missing.
 ///
-/// Torsion and friction are those of the twin (TorsionCurve, FrictionMap). The friction is implicit: just large enough
-/// to stop the motor, but at most that of the twin. With motor.presliding_angle it builds up over this angle. While the
-/// motor sticks, the measured angle does not change the disturbance, so that this estimate does not grow without limit.
-/// Its band widens instead. If the robot moves nevertheless, the output of the model follows it until the torque of the
-/// spring exceeds stiction. The residual is the torque that remains: more friction, or an unknown load. The observer
-/// never adapts the parameters of the model, because it would adapt them to a fault. A step takes about a microsecond.
+/// Torsion and friction are those of the twin (TorsionCurve, FrictionMap). The friction is just large enough to stop
+/// the motor within the step, but at most that of the twin. With motor.presliding_angle the friction builds up over
+/// this angle. While the motor sticks, the measured angle does not change the disturbance torque, so that this estimate
+/// does not grow without limit; its band widens instead. If the robot moves while the model's motor sticks, the output
+/// of the model follows the robot until the torque of the torsion exceeds stiction. The estimated disturbance torque is
+/// the residual: a friction that the twin lacks, or an unknown load. The observer never adapts the parameters of the
+/// model, because it would adapt them to a fault. A step takes about a microsecond.
 class Observer
 {
 public:
-  static constexpr double STEP = 1.0e-3;  ///< length of a step [s]
+  static constexpr double STEP = 1.0e-3;  ///< length of a step of the filter [s]
 
   /// @throws ParameterError if the ring finds no equilibrium under load.
   explicit Observer(const Parameters& parameters);
@@ -102,17 +106,17 @@ private:
   Load load_;
   ObserverParameters noise_;
   double ratio_;
-  double temperature_;       // temperature for measurements without a temperature [degC]
+  double temperature_;       // assumed temperature of measurements without one [degC]
   double presliding_angle_;  // angle of the motor over which friction builds up [rad]
   TorsionCurve curve_;
-  std::vector<ObserverPiece> pieces_;  // linear pieces of the torsion curve
+  std::vector<ObserverPiece> pieces_;  // linear models for the pieces of the torsion curve
   ObserverPiece::Vector state_;
   ObserverPiece::Matrix covariance_;
   Measurement last_;
   bool started_{};
   double now_{};           // time of the state [s]
-  double motor_zero_{};    // zero of the motor's encoder [rad]
-  double friction_now_{};  // [N.m]
+  double motor_zero_{};    // reading of the motor's encoder - motor angle of the state [rad]
+  double friction_now_{};  // friction at the motor in the last step [N.m]
   double mobilised_{};     // share of the friction that has built up, with its sign [-]
   bool sticking_{};
   double angle_deviation_{};  // expected standard deviation of the last innovation [rad]

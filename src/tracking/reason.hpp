@@ -37,20 +37,20 @@ enum class Reason : std::uint8_t
   NO_MOTOR_ANGLE = 22,       ///< torsion is not judged: the recording has only one angle for each joint
   LOAD_CONSTANT = 23,        ///< torsion is not judged: the load hardly varies
   TOO_FEW_WINDOWS = 24,      ///< the signals are not judged: there are fewer windows than a verdict needs
-  NO_REFERENCE = 25,         ///< the reference has none of the speeds, or none of the operating points of the signals
+  NO_REFERENCE = 25,         ///< the reference lacks the speeds or the operating points of the recording
   TOO_SHORT = 26,            ///< too few rows to measure the friction, or to learn a reference of the signals
-  TWO_SOURCES = 27,          ///< several sources send the same joints in turn
+  TWO_SOURCES = 27,          ///< several sources send rows of the same joints in turn
   GEAR_RATIO = 28,           ///< motor and joint do not turn by the ratio of the configured gear
   AT_REST = 29,              ///< the joint does not move
   ONE_SPEED = 30,            ///< the joint has too few speeds, so the uncertainty of its friction is unknown
   NO_FRICTION = 31,          ///< the effort contains no friction: it is a modelled or commanded torque
-  LESS_THAN_FAULTS = 32,     ///< less friction than any fault leaves: a hand leads the arm, or gain or ratio are wrong
+  LESS_THAN_FAULTS = 32,     ///< less friction than with any fault: a hand leads the arm, or gain or ratio are wrong
   FRICTION_SCATTER = 33,     ///< the rows scatter too much to measure the friction: the load is wrong
-  TORSION_NO_DRIVE = 34  ///< no fault causes so large or so small a torsion: load or angles are not those of this joint
+  TORSION_NO_DRIVE = 34      ///< no fault explains the torsion: load or angles are not those of this joint
 };
 constexpr std::size_t REASON_COUNT = 35;
 
-const char* reasonName(Reason reason) noexcept;  ///< "ONE_DIRECTION"
+const char* reasonName(Reason reason) noexcept;  ///< name of a reason, for example "ONE_DIRECTION"
 
 /// Reason why a joint is not judged.
 struct Misfit
@@ -61,22 +61,22 @@ struct Misfit
   bool exists() const { return !clause.empty(); }
 };
 
-/// Friction of a joint over its expected friction in fits of the currents of all joints, apart from the factor that the
-/// joints share. `factor` is that of the likeliest fit. The interval covers the intervals of all fits that are not
-/// clearly less likely.
+/// Measured over expected friction of a joint in fits of the currents of all joints, apart from the factor that the
+/// joints share [-]. `factor` is that of the likeliest fit. `lower` and `upper` are the ends of an interval that
+/// contains the 95 % intervals of all fits that are not clearly less likely than the likeliest fit.
 struct FittedFriction
 {
   double factor{ 1.0 };
   double lower{ 0.0 };
   double upper{ HUGE_VAL };    ///< upper end of the interval; HUGE_VAL with `lower` = 0: there is no fit
   double of_rows{ HUGE_VAL };  ///< half width of the interval by the rows alone, without prior knowledge [-]
-  /// Clauses that say why the friction may be as expected although the joint's own rows show more, or less. Empty: it
-  /// may not.
+  /// Clauses that say why the friction may be as expected although the joint's own rows show more friction, or less
+  /// friction. Empty: the fits do not show that.
   std::string not_more{};
   std::string not_less{};
 
-  /// Least deviation of the factor from 1 that departs [-]. Joints of a sound UR5 and UR10e deviate by up to 0.07, and
-  /// a sound joint next to one with 60 % more friction by 0.11.
+  /// Least deviation of the factor from 1 that counts in departs() [-]. Sound joints of a UR5 and a UR10e deviate by up
+  /// to 0.07, and a sound joint beside a joint with 60 % more friction deviates by 0.11.
   static constexpr double BOUND = 0.15;
   bool departs() const { return lower > 1.0 + BOUND || upper < 1.0 - BOUND; }
   /// Whether the friction is within `tolerance` of the expected friction, also by the rows alone.

@@ -37,7 +37,8 @@ YAML::Node readData(const std::string& directory, const char* name)
   }
 }
 
-/// Reads numbers of a comparison. A number is NaN if it is null, or if the file is older and lacks it.
+/// Reads the numbers `names` of a comparison. A number is NaN if its value in the file is null, or if an older file
+/// lacks the number.
 template <std::size_t N>
 std::array<double, N> readNumbers(const std::string& directory, const std::array<const char*, N>& names)
 {

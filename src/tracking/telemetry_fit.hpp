@@ -15,9 +15,9 @@
 
 namespace hjt
 {
-/// Checks whether motor and joint turn by the configured ratio. The found ratio is the slope of the motor angle over
-/// the joint angle, by least squares of the changes from row to row, so that a constant torsion has no effect. Only
-/// text() allocates.
+/// Checks whether motor and joint turn by the configured ratio. The ratio that the class finds is the slope of the
+/// motor angle over the joint angle, by least squares from the changes from row to row, so that a constant torsion has
+/// no effect. Only text() allocates.
 class RatioFit
 {
 public:
@@ -60,8 +60,8 @@ public:
   }
 
 private:
-  static constexpr double LEAST_WAY = 0.5;  // [rad]
-  static constexpr double OFF = 0.005;  // least deviation that counts, as a share; torsion and encoders cause less [-]
+  static constexpr double LEAST_WAY = 0.5;  // least distance that a joint must move for a result [rad]
+  static constexpr double OFF = 0.005;      // least relative deviation that counts; torsion and encoders cause less [-]
 
   double ratio_;
   MotionRow last_;
@@ -80,9 +80,10 @@ struct FittedFactor
 
 /// Checks whether the recorded velocities of a joint agree with the slopes of its angles over the stamps.
 ///
-/// The class averages both over pieces of 0.1 s. The factor is the weighted median of their ratios over windows of 0.8
-/// s with motion, so that single wrong rows do not count. The lag follows from least squares, to first order. Only the
-/// last MEMORY pieces with motion count. Nothing allocates.
+/// The class averages velocities and slopes over pieces of 0.1 s. The factor is the weighted median of slope / velocity
+/// over windows of 0.8 s with motion, so that single wrong rows do not count. The lag of the velocity follows from
+/// least squares, to first order. The last KEPT windows count for the factor, about the last MEMORY pieces with
+/// acceleration for the lag. Nothing allocates.
 class TimeFit
 {
 public:
@@ -119,7 +120,8 @@ public:
     has_velocity_ = has_velocity_ || std::isfinite(velocity);
   }
 
-  /// Change of the angles over the integral of the velocities [-]. 1: they agree; infinite: the velocities are zero.
+  /// Change of the angles over the integral of the velocities [-]. 1: angles and velocities agree; infinite: the
+  /// velocities are zero.
   FittedFactor factor() const noexcept
   {
     const std::size_t count = std::min<std::uint64_t>(windows_, KEPT);
@@ -160,7 +162,7 @@ public:
     return factor;
   }
 
-  /// Lag of the recorded velocity behind the slope of the angles [s]. It has a meaning only if the factor is near 1.
+  /// Lag of the recorded velocity behind the slope of the angles [s]. The lag has a meaning only if factor() is near 1.
   FittedFactor lag() const noexcept
   {
     FittedFactor lag;
@@ -178,9 +180,9 @@ public:
 private:
   static constexpr int PIECES = 8;                   // number of pieces in a window
   static constexpr std::size_t MIN_WINDOWS = 6;      // least number of windows for a median
-  static constexpr std::size_t KEPT = 256;           // number of kept windows: 200 s of motion
-  static constexpr double MEMORY = 2000.0;           // number of pieces over which the lag is averaged
-  static constexpr double MIN_ACCELERATED = 20.0;    // least number of pieces with an acceleration
+  static constexpr std::size_t KEPT = 256;           // number of kept windows, 200 s of motion
+  static constexpr double MEMORY = 2000.0;           // number of accelerated pieces over which the lag is averaged
+  static constexpr double MIN_ACCELERATED = 20.0;    // least number of accelerated pieces for a lag
   static constexpr double LEAST_ACCELERATION = 0.1;  // least acceleration of an accelerated piece [rad/s^2]
 
   struct Piece
@@ -236,7 +238,7 @@ private:
   Piece window_;
   std::array<Piece, KEPT> kept_;
   std::uint64_t windows_{};
-  double accelerations_{};  // sums of squares and of products of accelerations
+  double accelerations_{};  // sum of the squared accelerations [rad^2/s^4]
   double products_{};
   double differences_{};
   double accelerated_{};

@@ -18,7 +18,7 @@
 
 namespace hjt
 {
-/// Largest numbers in a sound message [s], [rad], [A] or [N.m]. Larger numbers come from damage.
+/// Largest time [s], angle [rad] and effort [A] or [N.m] in an undamaged message.
 constexpr double MAX_TIME = 1e-9 * static_cast<double>(MAX_STAMP);
 constexpr double MAX_ANGLE = 1.0e4;
 constexpr double MAX_EFFORT = 1.0e4;
@@ -28,7 +28,7 @@ inline bool isPlausibleEffort(double effort) noexcept
   return std::abs(effort) <= MAX_EFFORT;  // false for NaN
 }
 
-/// Whether time, position and current can be true, and also the motor angle if the row has one.
+/// Whether time, position, current and, if the row has one, motor angle of a row are possible values.
 inline bool isPlausible(const MotionRow& row) noexcept
 {
   return std::abs(row.time) < MAX_TIME && std::abs(row.position) < MAX_ANGLE && isPlausibleEffort(row.current) &&
@@ -49,18 +49,18 @@ struct StreamTimingReport
   std::uint64_t rows{};      ///< number of rows with a later stamp than the row before
   std::uint64_t repeated{};  ///< number of rows with the stamp of the row before
   std::uint64_t backward{};  ///< number of rows with an earlier stamp than the row before
-  std::uint64_t missing{};   ///< number of rows that are missing between two others, by the period
+  std::uint64_t missing{};   ///< number of rows that are missing in gaps between rows, by `period`
   double period{};           ///< median step between the stamps of the last rows [s]
   double longest_gap{};      ///< longest step between stamps [s]
-  double offset{};  ///< smallest delay from stamp to arrival: difference of the clocks + shortest transport [s]
-  double jitter{};  ///< time after `offset` within which 95 % of the rows arrive [s]
+  double offset{};           ///< least time from stamp to arrival: offset of the clocks + shortest transport [s]
+  double jitter{};           ///< 95 % of the rows arrive within `offset` + `jitter` after their stamps [s]
 };
 
 /// Watches the stamps of a stream and the times when its rows arrive. Memory is fixed; nothing allocates.
 class StreamTiming
 {
 public:
-  /// Jump back of the stamps that begins a new stream: a new recording, or a clock that was set [s].
+  /// Jump back of the stamps from which on a new stream begins, for example another recording [s].
   static constexpr double RESTART = 1.0;
 
   void reset() noexcept { *this = StreamTiming(); }
@@ -78,7 +78,7 @@ public:
     }
     const double interval = report_.rows > 0 ? time - last_ : 0.0;
     const std::size_t slot = report_.rows % KEPT;
-    // The first row has no interval before it, so the interval of the second row takes its place.
+    // The first row has no interval, so the interval between first and second row stands for it.
     intervals_[slot] = interval;
     intervals_[0] = report_.rows == 1 ? interval : intervals_[0];
     delays_[slot] = received - time;
@@ -105,8 +105,8 @@ public:
   }
 
 private:
-  static constexpr std::size_t KEPT = 256;  // number of rows from which medians are computed
-  static constexpr std::size_t RENEW = 32;  // number of rows from one update of the period to the next
+  static constexpr std::size_t KEPT = 256;  // number of last rows from which quantiles are computed
+  static constexpr std::size_t RENEW = 32;  // number of rows from one computation of the period to the next
 
   template <std::size_t N>
   static double quantile(std::array<double, N> values, std::size_t count, double part) noexcept
@@ -128,10 +128,10 @@ private:
   double last_{ -std::numeric_limits<double>::infinity() };
 };
 
-/// Makes the angles of a joint continuous if their source keeps them within one turn. Nothing allocates.
+/// Makes the angles of a joint continuous if their source keeps the angles within one turn. Nothing allocates.
 ///
-/// A step within MotionDifferentiator::MAX_GAP that differs from one turn by less than NEAR is a fold, because no joint
-/// turns so far in this time. The number of turns stays the same over a gap.
+/// A change of the angle within MotionDifferentiator::MAX_GAP that differs from one turn by less than NEAR is a fold,
+/// because no joint turns so far in this time. A change over a longer time is no fold.
 class UnfoldedAngle
 {
 public:
@@ -156,7 +156,7 @@ public:
   void reset() noexcept { *this = UnfoldedAngle(); }
 
 private:
-  static constexpr double NEAR = 1.0;  // largest difference of a fold from one turn [rad]
+  static constexpr double NEAR = 1.0;  // largest difference between a fold and one turn [rad]
 
   double last_{ std::numeric_limits<double>::quiet_NaN() };
   double time_{ std::numeric_limits<double>::quiet_NaN() };
@@ -164,13 +164,13 @@ private:
   std::uint64_t folds_{};
 };
 
-/// Number of rows that RowFilter dropped, by the reason.
+/// Numbers of rows that RowFilter dropped, for each reason.
 struct LeftOutRows
 {
   std::uint64_t impossible{};   ///< a value is not finite, or larger than a sound message can hold
-  std::uint64_t unreachable{};  ///< the rows before and after contradict an angle
+  std::uint64_t unreachable{};  ///< an angle contradicts those of the rows before and after
   std::uint64_t repeated{};     ///< all values are those of the row before, although the joints move
-  std::uint64_t bunched{};      ///< the row follows the row before much sooner than the period
+  std::uint64_t bunched{};      ///< the row follows sooner than a quarter of the mean time between rows
 
   std::uint64_t all() const noexcept { return impossible + unreachable + repeated + bunched; }
 };
@@ -181,20 +181,20 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
   return parameters.motor.speed_limit / nominalRatio(parameters.gear);
 }
 
-/// Passes only rows of several joints that are new and can be true, from recordings, arrays or live messages.
+/// Passes only rows that are new and possible, for several joints, from recordings, arrays or live messages.
 ///
 /// The filter holds back a row with an angle that the joint cannot have reached since the row before. If a later row,
 /// within MotionDifferentiator::MAX_GAP, can be reached from the row before, the filter drops the rows that it held
-/// back. Otherwise the angles did jump, or stamps or unit are wrong. The filter then passes all rows, because other
-/// checks report such faults. Only the first row waits although it is good, because no row is before it.
-/// A row that repeats the angles, currents and velocities of all joints while they move was not measured: a recorder
-/// was stuck, or a driver publishes faster than its robot measures. A row that follows within a quarter of the mean
-/// step was stamped when a buffer was emptied, so its stamp is not its time. After construction nothing throws or
-/// allocates.
+/// back. Otherwise the angles really jumped, or stamps or unit of the angles are wrong. The filter then passes all held
+/// rows, because later checks report these errors. The first row also waits for the second one, because no row before
+/// it can confirm it. The filter drops a row that repeats the angles, currents and velocities of all joints while the
+/// joints move, because it was not measured: a recorder was stuck, or a driver publishes more often than its robot
+/// measures. The filter drops a row that follows within a quarter of the mean time between rows, because such a row was
+/// stamped when a buffer was emptied. After construction nothing throws or allocates.
 class RowFilter
 {
 public:
-  static constexpr double SLACK = 0.02;  ///< allowed error of a step between rows, because messages come in bursts [s]
+  static constexpr double SLACK = 0.02;  ///< allowed error of the time between rows; messages come in bursts [s]
 
   using Rows = std::vector<MotionRow>;
 
@@ -204,7 +204,7 @@ public:
   {
   }
 
-  /// Forgets all rows, because those of another stream follow.
+  /// Forgets all rows, because rows of another stream follow.
   void reset() noexcept
   {
     has_last_ = has_raw_ = is_confirmed_ = moves_ = false;
@@ -213,8 +213,8 @@ public:
     mean_step_ = 0.0;
   }
 
-  /// Takes one row of each joint, all of one time. Calls `visit` with the rows that pass, one time after the other.
-  /// Returns false if `visit` returned false, because it needs no more rows.
+  /// Takes one row of each joint, all of the same time. Calls `visit` with the rows that pass, in the order of their
+  /// times. Returns false if `visit` returned false, that is if `visit` needs no more rows.
   template <class Visit>
   bool push(const Rows& rows, const Visit& visit)
   {
@@ -257,12 +257,12 @@ public:
   const LeftOutRows& leftOut() const noexcept { return left_out_; }
 
 private:
-  static constexpr std::size_t ROOM = 16;  // largest number of rows that the filter holds back
-  static constexpr double MARGIN = 1.2;    // factor on the greatest speed [-]
-  static constexpr double MOVING = 0.01;   // least speed of a joint that moves [rad/s]
-  static constexpr double BUNCHED = 0.25;  // step of a row below which it is bunched, as a share of the mean step [-]
-  static constexpr double MEMORY = 64.0;   // number of rows over which the mean step is averaged
-  static constexpr std::uint64_t SETTLED = 16;  // number of rows after which the mean step counts
+  static constexpr std::size_t ROOM = 16;       // largest number of rows that the filter holds back
+  static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
+  static constexpr double MOVING = 0.01;        // least speed of a joint that moves [rad/s]
+  static constexpr double BUNCHED = 0.25;       // time to a bunched row over the mean time between rows, at most [-]
+  static constexpr double MEMORY = 64.0;        // number of rows over which the mean step is averaged
+  static constexpr std::uint64_t SETTLED = 16;  // number of rows from which on the mean time between rows is known
 
   bool canReach(const Rows& from, const Rows& to) const noexcept
   {
@@ -333,7 +333,7 @@ private:
     }
     if (!is_confirmed_ && held_count_ > 0 && canReach(held_[held_count_ - 1], rows))
     {
-      // This row agrees with the row that the filter holds back, and both contradict the first row.
+      // The new row agrees with the held row, and both contradict the first row.
       ++left_out_.unreachable;
       is_confirmed_ = true;
       return release(visit) && accept(rows, visit);
@@ -369,9 +369,9 @@ private:
   }
 
   std::vector<double> speeds_;
-  Rows last_;               // the rows that passed last; the first rows wait here for the second ones
-  Rows raw_;                // the last rows before the filter, without repeated rows
-  std::vector<Rows> held_;  // the rows that the joints cannot have reached from last_
+  Rows last_;               // the last rows that passed; the first rows of a stream wait here for the next
+  Rows raw_;                // the last rows that push() received, without repeated rows
+  std::vector<Rows> held_;  // the held rows, which the joints cannot have reached from last_
   std::size_t held_count_{};
   bool has_last_{};
   bool has_raw_{};

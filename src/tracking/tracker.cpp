@@ -19,7 +19,7 @@ namespace
 /// Half width of a band, in standard deviations [-].
 constexpr double DEVIATIONS = 3.0;
 
-/// Whether loads of this source contain all torques at the output, with weight and inertia.
+/// Whether a load of this source contains all torques at the output, including weight and inertia.
 bool holdsAll(LoadSource source)
 {
   return source == LoadSource::TARGET_MOMENT || source == LoadSource::ARM;
@@ -93,13 +93,14 @@ void Tracker::pushLoad(double time, double torque) noexcept
   }
 }
 
-/// The last load that is not later than `time`; none: the load comes from the model, or the first load is later.
+/// The last received load whose time is not after `time` [N.m]; none: no load was received by then, or telemetry.load
+/// is `model`.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
 }
 
-/// Prepares for a row at `time`. A jump back in time starts the tracker again.
+/// Prepares for a row at `time` [s]. If the time jumps back, the tracker starts again.
 void Tracker::begin(double time) noexcept
 {
   if (time < last_time_ - StreamTiming::RESTART)
@@ -161,7 +162,8 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   const bool is_known = received || load_source_ == LoadSource::MODEL;
   load_is_known_ = is_known;
   sample.load = received.value_or(0.0) + (is_all ? 0.0 : ownTorque(load_, sample));
-  // The load of the controller contains a part of the motor's inertia. This part must not count twice.
+  // A load from the controller contains the part telemetry.inertia_in_load of the motor's inertia. The twin contains
+  // this part too, so the program subtracts it here.
   const double external =
       received.value_or(0.0) - (is_all ? telemetry_.inertia_in_load * ratio_ * ratio_ * sample.acceleration : 0.0);
 
@@ -176,7 +178,8 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   now.temperature_received = is_temperature_received;
   now.housing_temperature = grease_.housing(prediction_temperature);
   now.after_gap = sample.after_gap;
-  // The evidence uses the temperature beside the motor, as `compare` does. The comparison uses that of the grease.
+  // The evidence uses the received temperature near the motor, as `compare` does. The comparison uses the temperature
+  // of the grease.
   evidence_.predict(sample);
   sample.temperature = prediction_temperature;
   if (torque_driven_)
@@ -193,7 +196,7 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   }
   grease_.book(sample.velocity, now.friction_torque,
                telemetry_.torque_per_current * (sample.current - telemetry_.current_offset) / ratio_);
-  now.current.band = is_known ? now.current.band : 0.0;  // without a load the current cannot be judged
+  now.current.band = is_known ? now.current.band : 0.0;  // without a known load the current cannot be judged
   now.residual_torque = telemetry_.torque_per_current * now.current.residual();
 
   sample.temperature = received_temperature;
@@ -210,7 +213,7 @@ void Tracker::predictByTorque(const MotionSample& sample, double external, Compa
   now.friction_torque = motion.friction_torque;
 }
 
-/// Uses the step that the twin of evidence_ has made already.
+/// Predicts without a step of its own, because the twin of evidence_ has already made the step to this sample.
 void Tracker::predictByMotion(const MotionSample& sample, Comparison& now) const noexcept
 {
   const MotionPrediction predicted = evidence_.twin().at(sample.temperature);
@@ -229,7 +232,7 @@ void Tracker::predictByObserver(const MotionSample& sample, double external, Com
                         sample.position, sample.motor_angle, sample.after_gap, sample.temperature });
   now.position.predicted = sample.position - seen.innovation;
   now.position.band = seen.innovation_band;
-  // The velocity of the rotor, because the output swings by the error of the load.
+  // The predicted velocity is that of the rotor, because an error of the load makes the model's output oscillate.
   now.velocity.predicted = seen.motor_velocity / ratio_;
   now.current.predicted = sample.current + to_current * seen.residual_torque;
   now.current.band = std::hypot(DEVIATIONS * telemetry_.current_deviation, to_current * seen.residual_band);

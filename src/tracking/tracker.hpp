@@ -21,11 +21,11 @@ namespace hjt
 {
 class Observer;
 
-/// Lag of one signal behind another: the lag with the largest cross-correlation.
+/// Lag of one signal behind another signal: the lag at which their cross-correlation is largest.
 ///
-/// Both signals pass the same high-pass filter. The class sums their products for lags on a grid up to LONGEST in both
-/// directions, and forgets them over MEMORY. A parabola through the three largest values gives the lag between two
-/// points of the grid. Nothing allocates.
+/// Both signals pass the same high-pass filter. The class sums products of the signals for lags on a grid from -LONGEST
+/// to LONGEST, and forgets old products over MEMORY. A parabola through the largest correlation and its two neighbours
+/// gives a lag between points of the grid. Nothing allocates.
 class DelayEstimate
 {
 public:
@@ -36,7 +36,7 @@ public:
 
   void reset() noexcept { *this = DelayEstimate(); }
 
-  /// Adds a row of both signals. `time` must be later than in the row before [s].
+  /// Adds a row of both signals. `time` [s] must be later than in the row before.
   void add(double time, double leading, double lagging) noexcept
   {
     const bool first = end_ == begin_ || time > at(end_ - 1).time + MotionDifferentiator::MAX_GAP;
@@ -53,8 +53,8 @@ public:
     rows_[end_ % ROOM] = { time, leading - leading_mean_, lagging - lagging_mean_ };
     ++end_;
 
-    // The lagging signal is taken in the middle of the held rows, so that the leading signal is known before and after
-    // it.
+    // The lagging signal counts at a time in the middle of the held rows, so that the leading signal is known before
+    // and after this time.
     const double middle = time - LONGEST;
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
     if (at(oldest).time > middle - LONGEST)
@@ -85,8 +85,8 @@ public:
     }
   }
 
-  /// Lag of the lagging signal [s]; > 0: it comes later. None: the signals differ too much, or the longest lag has the
-  /// largest correlation.
+  /// Lag of `lagging` behind `leading` [s]. None: too few rows, a correlation below MIN_CORRELATION, or the largest
+  /// correlation at the longest lag.
   std::optional<double> lag() const noexcept
   {
     std::size_t best = 0;
@@ -107,7 +107,7 @@ public:
   }
 
 private:
-  static constexpr double MIN_SECONDS = 2.0;  // least duration of signals that give a lag [s]
+  static constexpr double MIN_SECONDS = 2.0;  // least duration of the signals for a lag [s]
 
   static constexpr std::size_t ROOM = 512;
   static constexpr int HALF = 25;  // number of lags in each direction: LONGEST / GRID
@@ -136,10 +136,10 @@ private:
   std::array<double, LAGS> products_{};
   std::array<double, LAGS> leading_power_{};
   double lagging_power_{};
-  double seconds_{};  // duration of the signals in the sums, which forget old rows [s]
+  double seconds_{};  // duration of the signals in the sums, less what the sums have forgotten [s]
 };
 
-/// A measured quantity and its prediction.
+/// Measured value of a quantity, and its prediction.
 struct Compared
 {
   double measured{};
@@ -150,7 +150,7 @@ struct Compared
 };
 
 /// Comparison of a measured joint with a sound joint at the time of one row of telemetry. The fields are those of
-/// Comparison.msg and always finite.
+/// Comparison.msg. Their values are always finite.
 struct Comparison
 {
   double time{};             ///< time of the row [s]
@@ -159,20 +159,20 @@ struct Comparison
   Compared current;          ///< current of the motor [A]
   double joint_torque{};     ///< torque of the joint on the arm: motor torque - friction - inertia of the rotor [N.m]
   double friction_torque{};  ///< friction of a sound joint, at the joint, with the sign of the motion [N.m]
-  double load_torque{};  ///< whole load of the prediction, received or configured; > 0 resists positive motion [N.m]
-  bool load_provided{};  ///< a load was received; without one that telemetry.load expects the current has no band
-  double temperature{};  ///< temperature of the grease in the prediction [degC]
+  double load_torque{};      ///< load with weight and inertia in the prediction; > 0 resists positive motion [N.m]
+  bool load_provided{};      ///< whether a load was received; if one is expected but missing, the current has no band
+  double temperature{};      ///< temperature of the grease in the prediction [degC]
   bool temperature_received{};   ///< whether `temperature` follows from a received temperature
-  double housing_temperature{};  ///< temperature near the motor; without thermal.model = two_nodes of the grease [degC]
-  bool sticking{};               ///< whether friction holds the joint: any current within the band is possible
-  bool after_gap{};              ///< this row is the first one after a gap in the telemetry
+  double housing_temperature{};  ///< temperature near the motor if thermal.model = two_nodes, else of the grease [degC]
+  bool sticking{};               ///< whether friction holds the joint, so that any current within the band is possible
+  bool after_gap{};              ///< whether this row is the first one after a gap in the telemetry
 
   /// Measured - predicted current, as a torque at the joint [N.m].
   double residual_torque{};
   bool isOutside() const noexcept { return std::abs(current.residual()) > current.band && current.band > 0.0; }
 };
 
-/// Numbers of rows and events.
+/// Numbers of rows and events in a Tracker.
 struct TrackerCounters
 {
   std::uint64_t compared{};              ///< rows with a comparison
@@ -180,14 +180,14 @@ struct TrackerCounters
   std::uint64_t gaps{};                  ///< gaps longer than MotionDifferentiator::MAX_GAP
   std::uint64_t restarts{};              ///< number of times that stamps went back by more than StreamTiming::RESTART
   std::uint64_t outside{};               ///< comparisons with a current outside its band
-  std::uint64_t without_load{};          ///< comparisons without a received load, though telemetry.load expects one
+  std::uint64_t without_load{};          ///< comparisons without a load, although telemetry.load expects a received one
   std::uint64_t refused_temperatures{};  ///< temperatures that are not finite or impossible
   std::uint64_t solver_failures{};       ///< steps of the twin in mode `torque` without convergence
 };
 
 /// The twin beside a robot: compares rows of telemetry with a prediction, in mode `torque`, `motion` or `observer`, and
-/// judges the health. Live and offline results are equal for equal rows and loads, if each load comes before the rows
-/// that are MotionDifferentiator::HALF_WIDTH later. After construction nothing throws or allocates.
+/// judges the health. Live rows and rows of a recording give the same results if each load arrives before the rows that
+/// are MotionDifferentiator::HALF_WIDTH later. After construction nothing throws or allocates.
 class Tracker
 {
 public:
@@ -199,11 +199,12 @@ public:
 
   void reset() noexcept;
 
-  /// `fits`: whether the telemetry fits together. If not, the health is not judged, and starts again when it fits.
+  /// `fits`: whether angles, velocities and efforts of the telemetry fit together. If not, the health is not judged.
+  /// The windows of the signals start again when the telemetry fits.
   void setFits(bool fits) noexcept;
 
-  /// Sets the load at the output from `time` [s] on: the external or the whole load, as telemetry.load says [N.m].
-  /// Refuses a number that is not finite.
+  /// Sets the load at the output from `time` [s] on [N.m]: the load without or with weight and inertia, as
+  /// telemetry.load says. Ignores a number that is not finite.
   void pushLoad(double time, double torque) noexcept;
 
   /// Sets the temperature of the drive from `time` [s] on, for rows without a temperature [degC]. Refuses and counts
@@ -215,18 +216,19 @@ public:
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. Allocates.
+  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. This function
+  /// allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
-  /// Takes a row of telemetry without its own load. Call pop() afterwards.
+  /// Takes a row of telemetry and ignores MotionRow::load. Call pop() afterwards.
   void push(const MotionRow& row) noexcept;
 
-  /// The next comparison that is ready, at most MotionDifferentiator::HALF_WIDTH after its row. Call it until it
-  /// returns none.
+  /// The next comparison that is ready; none: there is none. A comparison is ready when the rows after its row are
+  /// known (MotionDifferentiator). Call this function until it returns none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
-  /// Replaces push() and pop() for a row with known rates, for example from ArmLoad. The row must be later than the row
-  /// before, and its values possible. Its own load does not count.
+  /// Replaces push() and pop() for a row with known speed and acceleration, for example from ArmLoad. The row must be
+  /// later than the row before, and its values possible. The function ignores MotionRow::load.
   Comparison compare(MotionSample sample) noexcept;
 
   /// Whether the last comparison had a load, or telemetry.load expects none.
@@ -245,7 +247,7 @@ public:
   void forgetEvidence() noexcept { evidence_.forget(); }
 
   /// Lag of a measured signal behind its prediction [s]: of the current in mode `motion`, of the speed in mode
-  /// `torque`. In mode `observer` there is no lag.
+  /// `torque`. None in mode `observer`.
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Indicators of the measured joint, from its own signals.
@@ -257,8 +259,8 @@ private:
   void begin(double time) noexcept;
   Comparison comparisonOf(MotionSample& sample) noexcept;
   std::optional<double> loadAt(double time) const noexcept;
-  // Each function fills position, velocity, current and torques of a comparison. `external`: load without the
-  // configured weight and inertia [N.m]. The load of `sample` is the whole load.
+  // Each of these functions fills position, velocity, current and torques of a comparison. `external`: load without the
+  // configured weight and inertia [N.m]. `sample.load`: load with weight and inertia [N.m].
   void predictByTorque(const MotionSample& sample, double external, Comparison& now) noexcept;
   void predictByMotion(const MotionSample& sample, Comparison& now) const noexcept;
   void predictByObserver(const MotionSample& sample, double external, Comparison& now) noexcept;
@@ -285,6 +287,6 @@ private:
   double last_compared_{};  // time of the last comparison [s]
   DelayEstimate lag_;
   TrackerCounters counters_;
-  std::uint64_t refused_{};  // number of rows refused before smoother_, and by smoother_ before the last restart
+  std::uint64_t refused_{};  // number of rows that push() refused, and that smoother_ refused before its last restart
 };
 }  // namespace hjt

@@ -20,14 +20,14 @@ double agreement(const JointEvidence& evidence)
                 std::pow(evidence.residualRms(), 2));
 }
 
-/// Says why the recorded current shows nothing of the drive: it is not the current of the motor, or it fits another
-/// load. Returns none if the current fits.
+/// Says why the recorded current shows nothing of the drive: it is not the current of the motor, or not the current
+/// under the assumed load. Returns none if the current fits.
 std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
 {
-  constexpr double MIN_RATIO = 0.02;  // least rms of the measured current, over that of the predicted current [-]
+  constexpr double MIN_RATIO = 0.02;  // least rms of the measured current over rms of the predicted current [-]
   constexpr double MAX_RATIO = 4.0;
   constexpr double MAX_UNEXPLAINED = 0.5;
-  constexpr double SPREAD = 2.0;  // least spread of the residual over the rms of the predicted current [-]
+  constexpr double SPREAD = 2.0;  // least standard deviation of the residual over rms of the predicted current [-]
   constexpr double AGREES = 0.7;  // least correlation of measured and predicted current [-]
   const double noticeable = 2.0 * evidence.parameters().telemetry.current_deviation;
   const double measured = evidence.currentRms();
@@ -44,7 +44,7 @@ std::optional<Reason> whyRowsDoNotFit(const JointEvidence& evidence)
   {
     return Reason::EFFORT_NOT_CURRENT;  // the effort has the opposite sign
   }
-  // Spikes, noise and external loads are large too, but they are no multiple of the prediction.
+  // Currents by spikes, noise or external loads can be as large, but they are no multiple of the predicted current.
   if (measured > noticeable && measured > MAX_RATIO * predicted && evidence.residualSpread() > SPREAD * predicted &&
       agreement(evidence) > AGREES * measured * predicted)
   {
@@ -74,14 +74,15 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
     finding.reason = Reason::LOAD_CONSTANT;
     return finding;
   }
-  constexpr double MAX_COMPLIANCE = 20.0;  // largest compliance over the twin's; no softer drive can still turn [-]
+  constexpr double MAX_COMPLIANCE = 20.0;  // largest compliance over the twin's; a softer drive cannot turn [-]
   if (compliance < 0.0 || compliance > MAX_COMPLIANCE)
   {
     verdict[Figure::TORSION_OF_TWIN] = compliance;
     finding.reason = Reason::TORSION_NO_DRIVE;
     return finding;
   }
-  // An eccentric encoder at the output has the effect of torsion by weight, once per turn. The motor turns many times.
+  // An eccentric encoder at the output has the effect of a torsion once per turn, as weight has. The error of the
+  // motor's encoder averages over many turns.
   const double twin = evidence.torsion().twinAmplitude();
   const double turn = evidence.torsion().turnAmplitude();
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
@@ -101,7 +102,7 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
   {
     nameCauses(evidence, ScalarIndicator::TORSIONAL_STIFFNESS, ratio > 1.0 ? -1.0 : 1.0, finding);
   }
-  constexpr double MIN_TURN = 0.01;  // least turnAmplitude() that shows the encoder's error [-]
+  constexpr double MIN_TURN = 0.01;  // least turnAmplitude() with which ENCODER_ERROR has a meaning [-]
   if (!is_own_known)
   {
     verdict[Figure::ENCODER_SHARE] = eccentricity;
@@ -160,13 +161,13 @@ Finding judgeSignals(const JointEvidence& evidence, const JointContext& context,
 /// Highest order per turn of the motor that the rows resolve at the highest speed [-]; 0: the joint does not move.
 double highestOrder(const JointEvidence& evidence, const Verdict& verdict)
 {
-  constexpr double RESOLVED = 0.4;  // share of the rows' rate up to which lines are resolved; in theory a half [-]
+  constexpr double RESOLVED = 0.4;  // highest resolved frequency over the rate of the rows; in theory 0.5 [-]
   const double fastest = std::max(-verdict[Figure::LOWEST_SPEED], verdict[Figure::HIGHEST_SPEED]);
   const double turns = std::abs(fastest * evidence.ratio()) * evidence.reach().sampled / TWO_PI;
   return turns > 0.0 ? RESOLVED * static_cast<double>(evidence.reach().rows) / turns : 0.0;
 }
 
-/// Sets the figures that do not depend on the findings.
+/// Sets the figures of the verdict that do not depend on its findings.
 void setFigures(const JointEvidence& evidence, const JointContext& context, Verdict& verdict)
 {
   const MotionReach& reach = evidence.reach();
@@ -285,7 +286,8 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    // The joint's own reference may have the same wrong gain.
+    // If the reference is that of the joint itself, it may have the same wrong gain, so that only a change of the
+    // friction shows a wrong gain.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);

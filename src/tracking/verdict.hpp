@@ -18,8 +18,9 @@
 
 namespace hjt
 {
-/// Increase of a joint's friction over its own that a verdict ignores, however certain it is [-]. The bound for a
-/// decrease is twice as wide, because no fault takes away a fifth of the friction.
+/// Relative increase, and relative decrease, of a joint's friction against its own earlier friction that a verdict
+/// ignores even if the change is certain [-]. The bound for a decrease is wider, because no fault takes away a fifth of
+/// the friction.
 constexpr double MORE_THAN_OWN = 0.05;
 constexpr double LESS_THAN_OWN = 0.10;
 
@@ -28,12 +29,12 @@ enum class FrictionReference : std::uint8_t
 {
   TWIN,
   CONTROLLER,  ///< friction that the arm's controller expects
-  OWN          ///< own friction of the joint when it was sound
+  OWN          ///< friction of this joint when the joint was sound
 };
 
-const char* referenceName(FrictionReference reference) noexcept;  ///< "controller"
+const char* referenceName(FrictionReference reference) noexcept;  ///< name in files, for example "controller"
 
-/// Friction of a joint as a multiple of its reference, with an interval (docs/compare.md).
+/// Measured friction of a joint over the friction of its reference, with an interval (docs/compare.md).
 struct FrictionFactor
 {
   double value{
@@ -44,7 +45,7 @@ struct FrictionFactor
   FrictionReference reference{ FrictionReference::TWIN };
   bool is_below_faults{};          ///< the joint has less friction than any fault leaves
   Reason reason{ Reason::SOUND };  ///< reason why the friction is not judged; SOUND: it is judged
-  std::string why_not;             ///< the same reason as a sentence; empty: the friction is judged
+  std::string why_not;             ///< `reason` as a sentence; empty: the friction is judged
 
   bool isJudged() const { return reason == Reason::SOUND; }
   /// Ends of the 95 % interval.
@@ -58,25 +59,24 @@ private:
 /// Reference of a joint from its own recordings when it was sound.
 struct OwnReference
 {
-  std::vector<FrictionPoint> friction;  ///< measured friction by speed; empty: not known
+  std::vector<FrictionPoint> friction;  ///< measured friction at each speed; empty: not known
   double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };                              ///< temperature of the recordings; NaN: not known [degC]
   double friction_deviation{};    ///< standard deviation of the friction by the scatter of the rows, as a share [-]
   std::size_t recordings{ 1 };    ///< number of recordings that show the friction
-  double recordings_deviation{};  ///< standard deviation of the friction from recording to recording, as a share [-]
-  bool is_unjudged{};             ///< true: there are recordings, but none shows the joint's friction
+  double recordings_deviation{};  ///< relative standard deviation of the friction between recordings [-]
+  bool is_unjudged{};             ///< whether recordings were given, but none of them shows the joint's friction
 };
 
-/// What a verdict on a joint needs besides its evidence.
+/// Values that a verdict on a joint needs in addition to the joint's evidence.
 struct JointContext
 {
   OwnReference own;
-  bool is_identified{};   ///< the twin's friction was identified by recordings of this joint
-  bool has_controller{};  ///< true: without `own` the reference is the friction that the arm's controller expects
-  /// Common factor of the joints' friction divided by that of the reference [-]. Its cause is temperature or gain, not
-  /// a fault.
+  bool is_identified{};   ///< whether the twin's friction was identified from recordings of this joint
+  bool has_controller{};  ///< whether the friction that the controller expects is the reference without `own`
+  /// Common friction factor of the joints [-]. Its cause is temperature or gain, not a fault.
   double arm_friction{ 1.0 };
   Misfit misfit{};  ///< why the rows of the joint are not judged
   /// Standard deviation of the logarithm of `arm_friction` [-]; 0: other joints of the group confirm the factor.
@@ -84,7 +84,7 @@ struct JointContext
   FittedFriction fitted{};
 };
 
-/// Level of a verdict. The numbers are those of Verdict.msg, the first three also those of HealthLevel.
+/// Level of a verdict. The numbers are those of Verdict.msg. OK, WARN and ERROR have the same numbers in HealthLevel.
 enum class VerdictLevel : std::uint8_t
 {
   OK = 0,
@@ -93,15 +93,15 @@ enum class VerdictLevel : std::uint8_t
   NOT_JUDGED = 3
 };
 
-const char* levelName(VerdictLevel level) noexcept;  ///< "WARN", "NOT JUDGED"
+const char* levelName(VerdictLevel level) noexcept;  ///< name, for example "WARN" or "NOT JUDGED"
 
-/// The level as a HealthLevel; OK if nothing was judged.
+/// The level as a HealthLevel; NOT_JUDGED becomes OK.
 inline HealthLevel severityOf(VerdictLevel level)
 {
   return level == VerdictLevel::NOT_JUDGED ? HealthLevel::OK : static_cast<HealthLevel>(level);
 }
 
-/// Numbers on which a verdict is based.
+/// Numbers that a verdict is based on.
 enum class Figure : std::uint8_t
 {
   ROWS,                    ///< number of all rows
@@ -110,7 +110,7 @@ enum class Figure : std::uint8_t
   CURRENT,                 ///< measured current, rms [A]
   CURRENT_PREDICTED,       ///< predicted current, rms [A]
   CURRENT_RESIDUAL,        ///< measured - predicted current, rms [A]
-  CURRENT_UNEXPLAINED,     ///< residual without the best constant and the best multiple of the friction, rms [A]
+  CURRENT_UNEXPLAINED,     ///< JointEvidence::unexplainedRms() [A]
   LEAST_LOAD,              ///< least load [N.m]
   MOST_LOAD,               ///< largest load [N.m]
   TEMPERATURE,             ///< mean temperature of the rows [degC]
@@ -119,21 +119,21 @@ enum class Figure : std::uint8_t
   SPEEDS,                  ///< number of speeds at which the friction was measured [-]
   LOWEST_SPEED,            ///< lowest speed with a friction point, with its sign [rad/s]
   HIGHEST_SPEED,           ///< highest speed with a friction point, with its sign [rad/s]
-  FRICTION_OF_TWIN,        ///< friction over the twin's friction [-]
-  FRICTION_OF_CONTROLLER,  ///< friction over the friction that the arm's controller expects [-]
-  FRICTION_OF_OWN,         ///< friction over the joint's own friction when it was sound [-]
+  FRICTION_OF_TWIN,        ///< measured friction over the twin's friction [-]
+  FRICTION_OF_CONTROLLER,  ///< measured friction over the friction that the arm's controller expects [-]
+  FRICTION_OF_OWN,         ///< measured friction over the joint's friction when it was sound [-]
   FRICTION_OF_ARM,         ///< common factor of the friction of all joints of the arm [-]
   FRICTION_SCATTER,        ///< standard deviation of the friction's logarithm by the scatter of the rows [-]
-  FRICTION_LOWEST,         ///< lowest friction of a sound joint, over the reference [-]
-  FRICTION_HIGHEST,        ///< highest friction of a sound joint, over the reference [-]
-  TORSION_OF_TWIN,         ///< torsion over the twin's torsion [-]
-  TORSION_OF_OWN,          ///< torsion over the drive's own torsion when it was sound [-]
-  TORSION_TOLERANCE,       ///< largest deviation of a sound drive's torsion from 1 [-]
-  ENCODER_SHARE,           ///< part of the tolerance of the torsion for eccentric encoders [-]
-  ENCODER_ERROR,  ///< error of the output encoder once a turn that would have the effect of the found torsion [rad]
+  FRICTION_LOWEST,         ///< lowest friction over the reference's friction that counts as sound [-]
+  FRICTION_HIGHEST,        ///< highest friction over the reference's friction that counts as sound [-]
+  TORSION_OF_TWIN,         ///< measured torsion over the twin's torsion [-]
+  TORSION_OF_OWN,          ///< TORSION_OF_TWIN over its value when this drive was sound [-]
+  TORSION_TOLERANCE,       ///< largest deviation from 1 of the torsion over its reference that counts as sound [-]
+  ENCODER_SHARE,           ///< part of TORSION_TOLERANCE that eccentric encoders need [-]
+  ENCODER_ERROR,           ///< once-per-turn error of the output encoder that would look like the found torsion [rad]
   ENCODER_ECCENTRICITY,    ///< configured eccentricity of the output encoder [rad]
-  WINDOWS,                 ///< number of windows of the signals that were compared [-]
-  WINDOWS_HERE,            ///< number of windows at one operating point, if there are too few [-]
+  WINDOWS,                 ///< number of windows of the signals that were compared with the reference [-]
+  WINDOWS_HERE,            ///< number of windows at one operating point, if too few for a verdict [-]
   WINDOWS_NEEDED,          ///< number of windows at one operating point that a verdict needs [-]
   ALARM_TIME,              ///< time from which on the signals differ from the reference [s]
   CONTACT_SINCE,           ///< beginning of the last contact [s]
@@ -149,7 +149,7 @@ constexpr std::size_t FIGURE_COUNT = 38;
 struct WeightedCause
 {
   Cause cause{};
-  double weight{};  ///< share of the windows in alarm that name the cause, or an equal share for each cause [-]
+  double weight{};  ///< share of the windows in alarm with this cause; else 1 / number of the finding's causes [-]
 };
 
 /// Quantities of a joint on which a verdict has findings.
@@ -160,47 +160,47 @@ enum class FindingSubject
   SIGNALS
 };
 
-const char* subjectTitle(FindingSubject subject);  ///< "Signals by windows"
+const char* subjectTitle(FindingSubject subject);  ///< title in reports, for example "Signals by windows"
 
 struct Finding
 {
   FindingSubject subject{};
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
   Reason reason{};                    ///< reason of the level; SOUND at level OK
-  std::vector<WeightedCause> causes;  ///< faults with the effect that was found; empty at level OK
+  std::vector<WeightedCause> causes;  ///< faults that can cause the finding; empty at level OK
 };
 
-/// Friction of a joint over its reference, and in an arm also over the common factor of the joints.
+/// Friction of a joint over the friction of its reference, in an arm divided by the common factor of the joints.
 struct JudgedFriction
 {
-  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< friction over the reference; NaN: not measured [-]
+  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< the quotient; NaN: not measured [-]
   double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of the interval of `factor` [-]
   double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of the interval of `factor` [-]
   bool has_interval{};
 };
 
-/// Verdict on a measured joint: its findings as data. `verdictText` and `findingText` turn them into sentences.
+/// Verdict on a measured joint: its findings as data. verdictText() and findingText() make sentences of the findings.
 struct Verdict
 {
   Verdict() { figures.fill(std::numeric_limits<double>::quiet_NaN()); }
 
   bool isJudged() const { return level != VerdictLevel::NOT_JUDGED; }
   double operator[](Figure figure) const { return figures[static_cast<std::size_t>(figure)]; }  ///< NaN: not known
-  /// Changes all findings and the verdict to NOT_JUDGED.
+  /// Changes all findings and the verdict to NOT_JUDGED, with the reason `why_not`.
   void dismiss(const Misfit& why_not);
   double& operator[](Figure figure) { return figures[static_cast<std::size_t>(figure)]; }
 
   VerdictLevel level{ VerdictLevel::NOT_JUDGED };
-  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding, or of the first if none is judged
+  Reason reason{ Reason::NO_STEADY_MOTION };  ///< reason of the worst finding; if none is judged, of the first finding
   std::string joint;
   JudgedFriction friction;
   std::string friction_text;             ///< sentences on the friction, or on why it is not judged
   std::vector<Finding> findings;         ///< findings on friction, torsion and signals
   std::vector<Evidence> evidence;        ///< evidence of the worst window of the signals, the strongest evidence first
-  std::vector<std::string> cannot_show;  ///< sentences on what these rows cannot show
-  bool may_be_gain{};                    ///< a wrong gain could have the effect of the friction that departs
-  bool fits{ true };                     ///< false: nothing is judged, because telemetry or load are wrong
-  std::string misfit;                    ///< clause that says why nothing is judged; empty: no such reason
+  std::vector<std::string> cannot_show;  ///< sentences on what the rows of the joint cannot show
+  bool may_be_gain{};                    ///< whether a wrong gain would explain the friction that departs
+  bool fits{ true };                     ///< whether telemetry and load fit; if not, nothing is judged
+  std::string misfit;                    ///< clause that says why nothing is judged; empty: see `reason`
   LoadOrigin load{};
   bool is_reference_given{};  ///< whether the user gave a reference of the signals
   bool has_signatures{};      ///< whether signatures of faults are known, so that findings can name causes
@@ -221,10 +221,10 @@ struct NamedFigure
 /// The known figures of a verdict, and the indicators of its evidence with their values in a sound joint.
 std::vector<NamedFigure> evidenceOf(const Verdict& verdict);
 
-// Functions that return sentences for messages and documents.
+// Sentences on a verdict, and on one of its findings, for messages and reports.
 std::string verdictText(const Verdict& verdict);
 std::string findingText(const Verdict& verdict, const Finding& finding);
-/// Sentences on what the rows of the evidence cannot show. `verdict` must have its figures already.
+/// Sentences on what the rows of `evidence` cannot show. `verdict` must already hold its figures.
 std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict);
 
 /// Sentence on the causes of a finding; empty: no signatures of faults are known.
@@ -233,30 +233,31 @@ std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 /// Makes a sentence of a clause.
 std::string sentence(std::string clause);
 
-/// WARN if the magnitude of `deviation` exceeds `tolerance`, ERROR if it exceeds `tolerance` times `error_factor`.
+/// WARN if the magnitude of `deviation` exceeds `tolerance`, ERROR if this magnitude exceeds `tolerance` times
+/// `error_factor`, otherwise OK.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
 Verdict judge(const JointEvidence& evidence, const JointContext& context);
 
-/// One word for the source of a joint's temperature.
+/// Source of a joint's temperature, as a word for messages.
 inline const char* temperatureSource(const JointEvidence& evidence)
 {
   return evidence.isTemperatureReceived() ? "received" : "configured";
 }
 
-/// Friction of the rows as a multiple of its reference. The evidence must outlive the result.
+/// Friction of a joint's rows, with its ratio to the friction of the reference. `evidence` must outlive the result.
 MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointContext& context);
 
-/// "1.18 [1.05, 1.32]"
+/// Value with its 95 % interval, for example "1.18 [1.05, 1.32]".
 std::string factorText(const FrictionFactor& factor);
 std::string factorText(const JudgedFriction& friction);
 
-/// Whether the friction that the arm's controller expects can be the reference: it agrees with that of most joints, so
-/// it belongs to sound joints.
+/// Whether the friction that the arm's controller expects can be the reference. It can if it agrees with the measured
+/// friction of at least three joints and of most joints, because then it is that of sound joints.
 bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
 
-/// Standard deviation of a sound joint's friction from its own earlier friction, as a share, apart from the common
-/// factor of its group [-]. `friction`: friction of the joint [N.m].
+/// Relative standard deviation of the change of a sound joint's friction from recording to recording, apart from the
+/// common factor of the joint's group [-]. `friction`: friction of the joint [N.m].
 double repeatOfOwn(double friction);
 
 /// Friction factor of the rows in the evidence.
@@ -269,21 +270,22 @@ struct SoundFriction
   double deviation{};  ///< standard deviation of the friction by the scatter of the rows, as a share [-]
 };
 
-/// Makes a reference of several recordings: mean friction at each speed, and difference between the recordings. Without
-/// recordings the reference is empty.
+/// Makes a reference of several recordings of a joint: mean friction at each speed, and standard deviation between the
+/// recordings. Without recordings the reference is empty.
 OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
-/// Judges the friction: WARN if its whole interval lies beyond the bound. Sets factor, text and figures of the verdict.
+/// Judges the friction: WARN if the whole interval of the friction factor lies beyond the bound. Sets factor, text and
+/// figures of the friction in `verdict`.
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
 
-/// Adds the faults that move the indicator in the direction `way`, +1 or -1, to the causes of the finding.
+/// Adds to the causes of `finding` the faults that move the indicator in the direction `way`, +1 or -1.
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
 
-/// Clause that says how the load may be wrong.
+/// Clause that says what may be wrong with a load of this origin.
 const char* wrongLoad(LoadOrigin load);
 
-/// Distinguishes a wrong gain of the current from a change of friction. With a wrong gain the current for load and
-/// inertia departs from the prediction by the same factor as that for friction.
+/// Distinguishes a wrong gain of the current from a change of friction. With a wrong gain, the current for load and
+/// inertia and the current for friction differ from their predictions by the same factor.
 struct GainEvidence
 {
   explicit GainEvidence(const JointEvidence& evidence)
@@ -291,16 +293,18 @@ struct GainEvidence
   {
   }
 
-  /// Whether only the friction departs, so that the gain is right.
+  /// Whether the factors of load and friction differ significantly, so that a wrong gain does not explain the friction.
   bool isExcluded() const
   {
     return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
   }
 
-  /// Whether the factor of the friction is nearer to that of the load than to 1. If not, a wrong load is as likely.
+  /// Whether the factor of the friction is nearer to the factor of the load than to 1. If not, a wrong load is as
+  /// likely as a wrong gain.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
-  /// Misfit by a wrong gain; none if both factors differ, or if the load is too small to show its factor.
+  /// Misfit by a wrong gain; empty: the factors of load and friction differ, the factor of the load is near 1, or the
+  /// load is too small to show its factor.
   Misfit misfit() const
   {
     constexpr double NOTEWORTHY = 0.2;  // least deviation of a gain that counts; gains of one type deviate by less [-]

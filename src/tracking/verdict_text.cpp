@@ -41,7 +41,7 @@ std::string wrongEffortText(double current, double predicted, Reason reason)
          "telemetry.torque_per_current is wrong.";
 }
 
-/// Sentence that says why torsion, signals or all findings are not judged.
+/// Sentence that says why the torsion, the signals or all subjects of a joint are not judged.
 std::string reasonText(const Verdict& verdict, Reason reason)
 {
   switch (reason)
@@ -83,7 +83,7 @@ std::string reasonText(const Verdict& verdict, Reason reason)
       return "The load is unknown.";
     case Reason::TELEMETRY_UNSETTLED:
       return "The program does not know yet whether angles and efforts fit together.";
-    default:  // verdict.misfit holds the reason
+    default:  // verdict.misfit describes all other reasons
       break;
   }
   return sentence(verdict.misfit);
@@ -94,7 +94,7 @@ std::string torsionText(const Verdict& verdict, const Finding& finding)
   const double to_own = verdict[Figure::TORSION_OF_OWN];
   const bool known = std::isfinite(to_own);
   const double value = known ? to_own : verdict[Figure::TORSION_OF_TWIN];
-  // Enough digits to show on which side of the bound the value lies.
+  // At least two digits, and as many as show on which side of the bound the value lies.
   const double lowest = std::max(0.0, 1.0 - verdict[Figure::TORSION_TOLERANCE]);
   const double highest = 1.0 + verdict[Figure::TORSION_TOLERANCE];
   int digits = 2;
@@ -317,7 +317,7 @@ std::string verdictText(const Verdict& verdict)
 
 std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict& verdict)
 {
-  constexpr double MIN_LOADING = 0.035;  // range of the load that shows its effects, over the largest load [-]
+  constexpr double MIN_LOADING = 0.035;  // least range of the load that shows faults under load, over the limit [-]
   const MotionReach& reach = evidence.reach();
   const double speeds = verdict[Figure::SPEEDS];
   const bool is_both_ways = verdict[Figure::LOWEST_SPEED] < 0.0 && verdict[Figure::HIGHEST_SPEED] > 0.0;

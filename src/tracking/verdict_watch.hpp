@@ -12,15 +12,15 @@
 namespace hjt
 {
 /// The verdict on a measured joint while its rows arrive. After half an hour the evidence starts again, and the last
-/// verdict stands until the new rows give one. A worse verdict counts only after CONFIRMED_AFTER, because the first
-/// rows of a motion are few.
+/// verdict stands until the new rows give a verdict. A worse verdict than the present one counts only after
+/// CONFIRMED_AFTER, because a verdict from few rows is uncertain.
 class VerdictWatch
 {
 public:
   /// `tracker` must outlive this object. `known`: the reference of the joint.
   VerdictWatch(Tracker& tracker, JointContext known) : tracker_(tracker), known_(std::move(known)) {}
 
-  /// Sets the misfit of the telemetry; empty: the telemetry fits. `settled`: false while this is not known yet.
+  /// Sets the misfit of the telemetry; empty: the telemetry fits. `settled`: whether `misfit` is final.
   void setMisfit(const Misfit& misfit, bool settled)
   {
     misfit_ = misfit;
@@ -30,10 +30,11 @@ public:
   const Misfit& misfit() const { return misfit_; }
   void setFitted(const FittedFriction& friction) { known_.fitted = friction; }
 
-  /// Friction of the rows of the present evidence, as `joint_twin compare` measures it.
+  /// Friction of the rows in the present evidence. `joint_twin compare` measures the friction in the same way.
   MeasuredFriction measuredFriction() const { return hjt::measuredFriction(tracker_.evidence(), context()); }
 
-  /// Sets the temperature for rows without a received temperature: that which explains the friction of all joints.
+  /// Sets the temperature for rows without a received temperature to ArmFriction::temperature, which explains the
+  /// friction of all joints.
   void predictAt(const ArmFriction& arm)
   {
     if (arm.is_known)
@@ -69,7 +70,7 @@ public:
   /// The present verdict.
   const Verdict& confirmed() const { return confirmed_; }
 
-  /// The present verdict, or a verdict that says why the joint is not judged at the moment.
+  /// The present verdict, or a verdict NOT_JUDGED that says why the joint is not judged at the moment.
   Verdict now() const
   {
     Verdict verdict = confirmed_;
@@ -85,8 +86,8 @@ public:
   }
 
 private:
-  static constexpr double JUDGED_SPAN = 1800.0;    // [s]
-  static constexpr double CONFIRMED_AFTER = 10.0;  // [s]
+  static constexpr double JUDGED_SPAN = 1800.0;    // longest time from first to last row in the evidence [s]
+  static constexpr double CONFIRMED_AFTER = 10.0;  // time after which a worse verdict counts [s]
 
   /// `arm`: common factors of the joints; nullptr: not known. `joint`: number of this joint.
   JointContext context(const ArmFriction* arm = nullptr, std::size_t joint = 0) const
@@ -105,7 +106,8 @@ private:
     const bool is_new = confirmed_at_ > reach.end;  // whether the telemetry started again
     Verdict verdict = hjt::judge(tracker_.evidence(), context);
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
-    // A misfit that the rows show replaces the verdict only as a worse verdict does. Too few rows replace no verdict.
+    // A misfit that the rows show replaces the present verdict only after CONFIRMED_AFTER. Too few rows for a verdict
+    // replace no verdict.
     const bool is_other =
         !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
                           verdict.reason == Reason::NO_FRICTION || context.misfit.exists() ||
@@ -128,9 +130,9 @@ private:
   JointContext known_;
   Misfit misfit_;
   bool settled_{ true };
-  double last_row_{};  // [s]
+  double last_row_{};  // time of the last row that was judged [s]
   Verdict confirmed_;
-  double confirmed_at_{};  // time of the last row with a verdict that was not worse [s]
+  double confirmed_at_{};  // time of the last row of the last verdict that replaced the present one [s]
 };
 
 /// commonFriction() for the joints of these verdicts.
