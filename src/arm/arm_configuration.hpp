@@ -14,8 +14,7 @@
 
 namespace hjt
 {
-/// Returns the main name of a shipped arm that has several names. The main name is the one that armsLike() returns.
-/// Returns any other name unchanged.
+/// Returns the main name of a shipped arm that has several names: the name that armsLike() returns. Keeps other names.
 std::string mainName(const std::string& name, const std::filesystem::path& directory);
 
 /// Returns the file of an arm: `name` itself if it is a file, otherwise arms/NAME.yaml in the directory of the default
@@ -30,15 +29,13 @@ std::vector<std::filesystem::path> armFiles(const std::filesystem::path& directo
 /// Names of the arm's joints in messages, from the base on.
 std::vector<std::string> jointNames(const ArmDescription& arm);
 
-/// Names of the arms in a directory of configurations whose joints have the same names as those of `arm`.
-/// @throws ParameterError.
+/// Names of the arms in `directory` whose joints have the same names as the joints of `arm`. @throws ParameterError.
 std::vector<std::string> armsLike(const ArmDescription& arm, const std::filesystem::path& directory);
 
 /// Number of the joint that has this name or short name; none if the arm has no such joint.
 std::optional<std::size_t> findJoint(const ArmDescription& arm, const std::string& name);
 
-/// Short names of the joints, as a list for error texts.
-std::string shortNames(const ArmDescription& arm);
+std::string shortNames(const ArmDescription& arm);  ///< short names of the joints, as a list for error texts
 
 /// Parameters of the drive of a joint. The joint's overlays, then the joint's parameters, replace values of the default
 /// configuration. If `identified` is not empty, the file SHORT_NAME.yaml in this directory replaces values last.
@@ -51,7 +48,7 @@ ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::pa
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Parameters of the drive of each joint. solver.scene is `auto` unless the joint's files or the options set this
+/// Parameters of the drive of each joint. solver.scene is `auto` unless the joint's files or `options` set this
 /// parameter.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
@@ -65,9 +62,8 @@ constexpr const char* GAINS_FILE = "controller.yaml";
 std::vector<std::size_t> driverOrder(const ArmDescription& arm);
 std::vector<std::string> driverNames(const ArmDescription& arm);
 
-/// Gives each drive of an arm its own seeds, so that no two drives have the same gear or the same noise. Adds the
-/// joint's number from the base on to the seed of the sensor noise, and twice this number to the seeds of the pitch
-/// deviations.
+/// Gives each drive of an arm its own seeds, so that no two drives have the same gear or noise. Adds the joint's number
+/// from the base on to the seed of the sensor noise, and twice this number to the seeds of the pitch deviations.
 void giveOwnSeeds(std::vector<Parameters>& drives);
 
 /// Adds faults to the drives. A fault is written JOINT:KIND:SEVERITY[:PLACE[:ONSET]], where JOINT is the name or the

@@ -104,8 +104,7 @@ void ArmController::take(const ArmTwin& twin, const std::vector<JointMotion>& se
   }
 }
 
-/// Set point of a joint that is older than the newest set point by `periods` periods of the control, by linear
-/// interpolation.
+/// Set point of a joint that is `periods` control periods older than the newest one, by linear interpolation.
 ArmController::Wanted ArmController::delayed(std::size_t joint, double periods) const noexcept
 {
   const std::vector<Wanted>& line = line_[joint];

@@ -27,8 +27,7 @@ namespace hjt
 class ArmController
 {
 public:
-  /// Inertia of the motor, seen from the joint [kg.m^2].
-  static double motorInertia(const Parameters& drive);
+  static double motorInertia(const Parameters& drive);  ///< inertia of the motor, seen from the joint [kg.m^2]
 
   /// Gains for a drive to which the arm's file gives no gains. The bandwidth of the speed control is 25 Hz, that of the
   /// position control 3 Hz, and the controller feeds no friction forward.
@@ -43,8 +42,7 @@ public:
     dynamics_.setPayload(payload);
   }  ///< sets the payload whose torque the controller feeds forward
 
-  /// Commands the torque of each drive from now on. Call this function at each instant for which isDue() is true, with
-  /// the set point of that instant.
+  /// Commands the torque of each drive from now on. Call this at each instant with isDue(), with the set point then.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
   bool isDue(const ArmTwin& twin) const noexcept;  ///< whether a period of the control begins at the present instant
@@ -54,8 +52,7 @@ public:
   /// Number of calls of control() since the reset in which a joint's feedback was at its limit while its brake was off
   /// [-]. A call counts once for each such joint.
   std::uint64_t limitedControls() const noexcept { return limited_; }
-  /// Whole torque that the controller feeds forward at a joint for the last set point: rigid-body torque, inertia of
-  /// the motor and friction [N.m].
+  /// Whole torque that the controller feeds forward: rigidTorques() plus inertia of the motor and friction [N.m].
   double feedForward(std::size_t joint) const noexcept { return feed_forward_[joint]; }
   /// Speed of a joint by the motor's encoder [rad/s]. While the controller runs, this is the speed from which the
   /// controller computed the present torque; otherwise it is the present speed.

@@ -112,9 +112,8 @@ struct PayloadFrom
 /// Payloads of an arm in the order of their times. Without entries the arm carries the configured payload.
 using PayloadCourse = std::vector<PayloadFrom>;
 
-/// The text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place` is the beginning of the error text: the
-/// place where another file names this file. @throws ParameterError if the file is not regular, larger, empty, or
-/// cannot be read.
+/// Text of a file of at most MAX_TEXT bytes (base/whole_file.hpp). `place`: place where another file names this file,
+/// for the error text. @throws ParameterError if the file is not regular, larger, empty, or cannot be read.
 std::string textOf(const std::string& path, const std::string& place = "");
 
 /// The path of the file `name` in the folder of the file `path`. An absolute `name` stays as it is.

@@ -98,8 +98,7 @@ struct ArmDynamics::Solver
     }
   }
 
-  /// Calls `visit` with each segment of the chain and the pose of the segment's end, from the base on. Returns the pose
-  /// of the tip.
+  /// Calls `visit` with each segment and the pose of the segment's end, from the base on. Returns the pose of the tip.
   template <class Visit>
   KDL::Frame walk(const Visit& visit) const
   {

@@ -15,8 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Indices of the unknowns of the fit (terms): first those of the arm, then those of the two groups of joints, then
-/// those of each joint.
+/// Indices of the unknowns of the fit (terms): those of the arm, then of the two groups of joints, then of each joint.
 enum Term : int
 {
   JUMP = ArmEstimator::LOAD,
@@ -89,8 +88,7 @@ constexpr std::size_t FEWEST = 20;  // least number of rows of a joint that coun
 constexpr double INDEPENDENT = 40.0;  // largest number of independent rows that the rows of a joint stand for
 constexpr double LEAST = 0.02;        // least standard deviation of the errors in the rows of a real arm [A]
 
-/// Negative logarithm of the probability density of a row's error, less its value at 0. `square`: square of the error
-/// in standard deviations.
+/// Negative logarithm of the density of a row's error over that of 0. `square`: squared error in standard deviations.
 double rarer(double square)
 {
   return 0.5 * (STUDENT + 1.0) * std::log1p(square / STUDENT);
@@ -239,8 +237,7 @@ double ArmEstimator::multiple() const
   return both / squares;
 }
 
-/// The likeliest point that the search finds from several starts. The last start assumes that one factor scales all
-/// predicted currents.
+/// Likeliest point from several starts. The last start assumes that one factor scales all predicted currents.
 ArmEstimator::Point ArmEstimator::best(const Prior& prior, const std::vector<bool>& states) const
 {
   Point best;
@@ -530,9 +527,8 @@ bool ArmEstimator::isNear(const Point& point, const Point& other)
 }
 
 /// Refines the values `at` of the terms by Gauss-Newton steps until the cost stays constant, or until the point is near
-/// `best`, the result of another start. `start`: as in looseness(). Each step computes the weights of the rows, the
-/// standard deviations and the priors from the last values (expectation and maximisation). So no single step makes the
-/// values less likely.
+/// `best`, the result of another start. `start`: as in looseness(). Each step computes weights, standard deviations and
+/// priors from the last values (expectation and maximisation), so that no single step makes the values less likely.
 ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<bool>& states, Eigen::VectorXd at,
                                          int start, const Point& best) const
 {
@@ -567,8 +563,7 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
       break;
     }
     cost = point.cost;
-    // The steps shrink by nearly the same ratio from round to round. So the function replaces every second step by the
-    // sum of this step and all later steps.
+    // Steps shrink by nearly the same ratio each round, so every second step becomes the sum of itself and later ones.
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
     const double size = last_step.dot(weighted);

@@ -72,8 +72,7 @@ void ArmRates::pushFast() noexcept
   }
 }
 
-/// Moves the next sample of every joint from the differentiators to `samples`. Returns false if the sample of a joint
-/// is not ready.
+/// Moves the next sample of every joint to `samples`. Returns false if the sample of a joint is not ready.
 bool ArmRates::take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept
 {
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -126,8 +125,8 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Sets the payload that the arm carries at `time`. At times before the first entry of course_ the arm carries the
-/// payload of this entry.
+/// Sets the payload that the arm carries at `time`. Before the first entry of course_ this is the payload of that
+/// entry.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

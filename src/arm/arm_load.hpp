@@ -36,8 +36,8 @@ public:
 
   explicit RowTimes(std::size_t joints) : last_(joints), agreements_(joints) {}
 
-  /// Returns the error of the stamp of `rows`: stamp - estimated time [s]. `rows`: one row of each joint, later than
-  /// the rows of the last call.
+  /// Returns the error of the stamp of `rows`: stamp - estimated time [s]. `rows`: later rows than in the last call,
+  /// one for each joint.
   double stampError(const std::vector<MotionRow>& rows) noexcept
   {
     const double step = started_ ? rows.front().time - last_.front().time : HUGE_VAL;
@@ -109,8 +109,7 @@ struct ArmSample
   std::vector<MotionSample> joints;  ///< samples whose rates use the rows within ArmRates::HALF_WIDTH, for the load
   /// Samples whose rates use the rows within MotionDifferentiator::HALF_WIDTH, with stamp errors and vibration.
   std::vector<MotionSample> own;
-  /// Load at the output of each joint by links and payload, without the motor's own inertia [N.m]. A positive load
-  /// resists positive motion.
+  /// Load of each joint by links and payload, without the motor's inertia; > 0 resists positive motion [N.m].
   std::vector<double> torques;
 };
 
@@ -130,8 +129,7 @@ public:
 
   explicit ArmRates(std::size_t joints);
 
-  /// Forgets all rows, because those of another stream follow.
-  void reset() noexcept;
+  void reset() noexcept;  ///< forgets all rows, because those of another stream follow
 
   /// Takes one row of each joint, all of one time. Returns false and ignores the rows if they are not later than the
   /// last rows that were taken, or if a value is impossible.
@@ -142,8 +140,7 @@ public:
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
-  /// Largest number of rows that wait for their fast rates.
-  static constexpr std::size_t ROOM = 256;
+  static constexpr std::size_t ROOM = 256;  // largest number of rows that wait for their fast rates
 
   static bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept;
   void pushFast() noexcept;
@@ -169,8 +166,7 @@ public:
   /// @throws ParameterError for the reasons that ArmDynamics names.
   explicit LinkTorques(const ArmDescription& arm, PayloadCourse course = {});
 
-  /// Adds the torques of `joints` and the vibration of `own` to `sample`.
-  void addTo(ArmSample& sample) noexcept;
+  void addTo(ArmSample& sample) noexcept;  ///< adds the torques of `joints` and the vibration of `own` to `sample`
 
   std::size_t joints() const noexcept { return motion_.size(); }
 

@@ -25,9 +25,8 @@ enum class ArmAccelerations : std::uint8_t
   OF_CUBICS  ///< second derivatives of the cubics, whatever accelerations the set points have
 };
 
-/// A commanded motion through set points. Between two set points the angles follow cubics that have the angles and
-/// speeds of both set points. Before the first set point, and after the last one, the joints stand still at the angles
-/// of this set point.
+/// A commanded motion through set points. Between two set points the angles follow cubics with their angles and speeds.
+/// Before the first set point, and after the last one, the joints stand still at the angles of this set point.
 class ArmMotion
 {
 public:
@@ -44,8 +43,7 @@ public:
   std::size_t joints() const noexcept { return points_.front().joints.size(); }
   const std::vector<ArmSetPoint>& points() const noexcept { return points_; }
 
-  /// Computes the motion of each joint at a time [s]. A call is fastest if `time` is later than in the call before.
-  /// `motion` has an entry for each joint.
+  /// Computes the motion of each joint at a time [s], fastest if times increase. `motion` has an entry for each joint.
   void at(double time, std::vector<JointMotion>& motion) noexcept;
 
   /// Adds a set point to a motion of two set points: the second set point becomes the first, and the new one the
@@ -84,8 +82,7 @@ struct ArmMove
   double wait{};               ///< time at rest after the move [s]
 };
 
-/// Angles of all joints [rad].
-using ArmPose = std::vector<double>;
+using ArmPose = std::vector<double>;  ///< angles of all joints [rad]
 
 /// A set point and the torques that its motion needs.
 struct ArmInstant : ArmSetPoint
@@ -94,9 +91,8 @@ struct ArmInstant : ArmSetPoint
 };
 
 /// Moves of a check-up of one joint. The joint moves alone, from ArmJoint::check_up and back to it. Slow strokes over
-/// its whole range show stiffness and friction by load. Strokes in which the load goes through zero show clearance and
-/// hysteresis. Fast strokes are the last. @throws ParameterError if the arm's file gives no ArmJoint::check_up, or no
-/// limits of a joint.
+/// its whole range show stiffness and friction by load. Strokes through zero load show clearance and hysteresis. Fast
+/// strokes are the last. @throws ParameterError if the arm's file gives no ArmJoint::check_up, or no limits of a joint.
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
 /// Samples the moves every `period` [s], with a rest before and after them. @throws ParameterError naming a joint that

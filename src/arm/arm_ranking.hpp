@@ -22,8 +22,7 @@ struct ArmFit
 
   std::string arm;
   EffortUnit unit{};  ///< unit of the efforts that fits best
-  /// factor that the currents of all joints have in common; 1 unless it is too large or too small for the gains of one
-  /// type [-]
+  /// factor that the currents of all joints have in common; 1 if it is within the scatter of gains of one type [-]
   double size{ 1.0 };
   double left{};  ///< share of the moving joints' currents that the best payload and mounting do not explain, rms [-]
   double cost{};  ///< negative logarithm of the likelihood of the rows with this arm [-]
@@ -48,9 +47,8 @@ using VisitArmRows = std::function<void(const std::vector<MotionRow>&)>;
 using PlayArmRows = std::function<void(const VisitArmRows&)>;
 
 /// Ranks the candidates by how well they explain the rows, the best first. Each candidate gets the payload, mounting
-/// and friction that fit best, and gains within the scatter of one type. All currents may have a common factor if the
-/// factor makes the rows much likelier. With `unit_is_given` the efforts have the configured unit. @throws
-/// ParameterError.
+/// and friction that fit best, and gains within the scatter of one type. All currents may have a common factor if it
+/// makes the rows much likelier. With `unit_is_given` the efforts have the configured unit. @throws ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
 /// A function that ranks the arms of these names, the best first.

@@ -57,8 +57,7 @@ std::vector<std::string> armColumnNames(std::size_t joints);
 class ArmRecorder
 {
 public:
-  /// `arm` must live as long as the recorder.
-  ArmRecorder(const ArmDescription& description, MovingArm& arm);
+  ArmRecorder(const ArmDescription& description, MovingArm& arm);  ///< `arm` must live as long as the recorder
 
   /// The row of the present instant. It is valid until the next call.
   const ArmRow& row() noexcept;
@@ -74,6 +73,5 @@ private:
 /// Sum of the counters of all drives. Only the number of steps is that of one drive, because the drives step together.
 TwinCounters countersOf(const ArmTwin& twin);
 
-/// Whether all drives took their last step on a response surface.
-bool allOnSurface(const ArmTwin& twin);
+bool allOnSurface(const ArmTwin& twin);  ///< whether all drives took their last step on a response surface
 }  // namespace hjt

@@ -15,8 +15,7 @@ namespace hjt
 {
 namespace
 {
-/// Weights of the values of the last three steps, the newest first, in the extrapolation to the next step [-]. Row k is
-/// for a polynomial of order k.
+/// Weights of the last three values, the newest first, in an extrapolation to the next step; row k for order k [-].
 constexpr std::array<std::array<double, 3>, 3> EXTRAPOLATIONS{
   { { 1.0, 0.0, 0.0 }, { 2.0, -1.0, 0.0 }, { 3.0, -3.0, 1.0 } }
 };
@@ -35,8 +34,7 @@ std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double
   {
     for (JointMotion& joint : pose)
     {
-      // The distributions of the standard library give different numbers on different compilers, so the program divides
-      // the generator's numbers itself.
+      // No distribution of the standard library, because its numbers depend on the compiler.
       joint.position = TWO_PI * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max());
     }
     dynamics.massMatrix(pose, mass);

@@ -65,8 +65,7 @@ bool LoadWatch::isDue() const
                        fit_->moved() >= next_look_;
 }
 
-/// Starts a thread that evaluates the rows so far. If no thread can start, the next evaluation is due after 30 s more
-/// of motion.
+/// Starts a thread that evaluates the rows so far. If no thread can start, the next try is after 30 s more of motion.
 void LoadWatch::begin(std::vector<bool> measured)
 {
   looked_at_ = last_time_;

@@ -35,8 +35,7 @@ public:
   /// Forgets the rows, because rows of another motion follow. The present load stays.
   void reset();
 
-  /// Whether look() has work: an evaluation is due, or the result of one is ready.
-  bool isDue() const;
+  bool isDue() const;  ///< whether look() has work: an evaluation is due, or the result of one is ready
   bool isLooking() const { return found_.valid(); }
   /// Starts an evaluation, or takes the result of the running one. Call this function if isDue() is true. `joints`:
   /// results with the present load. Returns true if from now on the joints are judged with another load than before.
@@ -81,13 +80,12 @@ private:
 
 /// Finds out, while rows arrive, whether the rows belong to another arm than the given one (rankArms). The class ranks
 /// the arms after 30, 60 and 120 s of motion. After eight more minutes of motion the class begins again with new rows,
-/// or at once if a ranking shows another arm. A ranking takes some seconds in a thread of its own. The class keeps only
-/// rows with motion.
+/// or at once if a ranking shows another arm. A ranking takes some seconds in its own thread. The class keeps only rows
+/// with motion.
 class ArmWatch
 {
 public:
-  /// A function that makes the arms to rank, including the given arm. The thread that ranks the arms calls this
-  /// function.
+  /// Makes the arms to rank, including the given arm. The thread that ranks the arms calls this function.
   using MakeCandidates = std::function<std::vector<ArmCandidate>()>;
 
   /// `own`: name of the given arm. `unit_is_given`: whether the efforts certainly have the configured unit.
@@ -101,17 +99,14 @@ public:
 
   /// Adds one row of each joint, all of the same time. Their field `current` holds the effort as received.
   void add(const std::vector<MotionRow>& rows);
-  /// Forgets all rows and the results of their rankings, because rows of another motion follow.
-  void reset();
+  void reset();  ///< forgets all rows and the results of their rankings, because rows of another motion follow
 
-  /// Takes the result of a ranking. Returns whether a ranking has ended since the last call. @throws any exception of
-  /// MakeCandidates.
+  /// Takes the result of a ranking that has ended; false: none has ended. @throws any exception of MakeCandidates.
   bool look();
 
   /// Name of the arm that is clearly likelier than the given one; empty: no such arm is known.
   const std::string& other() const { return other_; }
-  /// Whether a ranking of the present rows has ended.
-  bool isSettled() const { return is_settled_; }
+  bool isSettled() const { return is_settled_; }  ///< whether a ranking of the present rows has ended
 
 private:
   static constexpr double PERIOD = 0.006;  // least time between rows that are kept [s]

@@ -26,13 +26,10 @@ struct IdentifiedPayload
 
   /// Whether `mass` differs from the configured mass by more than its half width and by more than `least_claim`.
   bool differs() const;
-  /// Whether the 95 % interval of the mass lies above zero.
-  bool isCarried() const { return mass > mass_half_width; }
-  /// Whether differs() is true and the currents show either a mass above zero, or no mass although a payload is
-  /// configured.
+  bool isCarried() const { return mass > mass_half_width; }  ///< whether the 95 % interval of the mass lies above zero
+  /// Whether differs() is true, and the currents show a mass above zero, or none although a payload is configured.
   bool isOther() const;
-  /// The payload with its centre of mass; a payload without mass if isCarried() is false.
-  Payload payload() const;
+  Payload payload() const;  ///< the payload with its centre of mass; a payload without mass if isCarried() is false
   /// The clause "the currents show a payload of ... at the flange, but ... kg is configured. ...".
   std::string text() const;
 };
@@ -49,8 +46,7 @@ struct IdentifiedMounting
   /// Whether the tilt is significant and larger than in arms whose mounting is configured right, while the found size
   /// is within the errors of the configured size.
   bool differs() const;
-  /// The clause "the mounting differs from the configured one: gravity is tilted by ...".
-  std::string text() const;
+  std::string text() const;  ///< the clause "the mounting differs from the configured one: gravity is tilted by ..."
 };
 
 /// A force on the tip against the motion of the tip, for example of a cable or of a tool that rubs.
@@ -59,8 +55,7 @@ struct FoundDrag
   double force{};       ///< size of the force [N]
   double half_width{};  ///< half width of the force's 95 % interval [N]
 
-  /// Whether the whole interval of the force lies above 3 N.
-  bool exists() const;
+  bool exists() const;  ///< whether the whole interval of the force lies above 3 N
   /// The clause "the currents show a force of ... on the tool against its motion: ...".
   std::string text() const;
 };
@@ -114,8 +109,7 @@ struct AssumedLoad
 struct JudgedJoints
 {
   JudgedJoints() = default;
-  /// `fit`: fit of the joints' rows. `misfits` and `frictions`: misfit and friction of each joint. `tolerance`: as in
-  /// commonFriction().
+  /// `fit`: fit of the rows. `misfits`, `frictions`: those of each joint. `tolerance`: as in commonFriction().
   JudgedJoints(const RecordingFit& fit, std::vector<Misfit> misfits, std::vector<MeasuredFriction> frictions,
                double tolerance);
 
@@ -130,8 +124,8 @@ void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// Rules by which another load replaces the configured one, for recordings and live telemetry alike. The class tries a
 /// load that the currents show: a mounting, a drag, or a payload. A payload is tried only if a wrong load can cause all
-/// misfits of the joints. The new load stays if no joint with a measured current has a misfit under this load.
-/// Otherwise the previous load returns.
+/// misfits of the joints. The new load stays if no joint with a measured current has a misfit under it. Otherwise the
+/// load before returns.
 class LoadLaw
 {
 public:
@@ -140,8 +134,7 @@ public:
   bool take(const FoundLoad& found, const JudgedJoints& joints);
 
   const AssumedLoad& counts() const { return counts_; }
-  /// Whether a load is on trial.
-  bool isTrying() const { return is_trying_; }
+  bool isTrying() const { return is_trying_; }  ///< whether a load is on trial
 
 private:
   std::optional<AssumedLoad> other(const FoundLoad& found, const JudgedJoints& joints) const;

@@ -14,9 +14,8 @@ namespace hjt
 {
 namespace
 {
-// Cost of a mounting that is not the configured one, of a changing payload, or of a drag [-]: natural logarithm of how
-// rare it is. In recordings of a UR5 and a UR10e with a constant payload, a changing payload lowers the other cost by
-// up to 8.
+// Cost of a mounting other than configured, of a changing payload, or of a drag [-]: natural logarithm of how rare it
+// is. In recordings of a UR5 and a UR10e with a constant payload, a changing payload lowers the other cost by up to 8.
 constexpr double OTHER_CAUSE = 10.0;
 constexpr double TOLD = 1.0;    // largest half width by the rows alone with which a friction factor is known [-]
 constexpr double FLOOR = 0.02;  // share of the currents of a real arm that no twin explains [-]
@@ -131,8 +130,7 @@ void LoadFit::close(std::size_t joint, double time)
   block.count = 0;
 }
 
-/// The function compares the fraction of a multiple of the golden ratio with `share`, because these fractions are
-/// spread evenly.
+/// A row is drawn if a fraction is below `share`. The fractions of multiples of the golden ratio are spread evenly.
 bool LoadFit::isDrawn(std::size_t number, double share)
 {
   constexpr double GOLDEN = 0.6180339887498949;
@@ -241,8 +239,7 @@ void LoadFit::add(const std::vector<MotionSample>& samples, const TwinOf& twin)
   thin();
 }
 
-/// Rows of the joints for which `counts` is true, without the rows of pushed legs: about `most` rows of each joint,
-/// evenly drawn.
+/// About `most` rows of each joint for which `counts` is true, evenly drawn, without the rows of pushed legs.
 ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t most) const
 {
   ArmEstimator::Rows rows(rows_.size());
@@ -310,8 +307,7 @@ IdentifiedMounting LoadFit::mountingOf(const ArmEstimator::Estimate& estimate) c
   return found;
 }
 
-/// Argument `repeats` of ArmEstimator(): relative standard deviation of the friction of each joint when the joint is
-/// sound [-].
+/// Argument `repeats` of ArmEstimator(): relative standard deviation of each joint's friction in a sound joint [-].
 std::vector<double> LoadFit::repeats() const
 {
   std::vector<double> repeats;
@@ -340,8 +336,8 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
   return pushed_.empty() ? all : likeliest(counts);
 }
 
-/// Hypotheses that may explain the currents: first the likeliest one, then all others whose cost is larger by at most
-/// OTHER_CAUSE.
+/// Hypotheses that may explain the currents: first the likeliest one, then all whose cost is at most OTHER_CAUSE
+/// larger.
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
   constexpr double LEAST_JUMP = 0.1;       // least change of the mass; rising friction looks like less [kg]
@@ -376,8 +372,8 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
 
 /// Friction of each joint. The likeliest hypothesis gives the friction factor: that of the joint alone, or that with
 /// the common factors, whichever is nearer to 1. The interval spans the intervals of all hypotheses. If the likeliest
-/// hypothesis has another mounting than the configured one, the friction is unknown, because the twins' friction is
-/// that under a wrong load.
+/// hypothesis has another mounting than the configured one, it is unknown, because the twins' friction is for a wrong
+/// load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());

@@ -51,8 +51,7 @@ public:
 
   /// A function that returns the twin of a joint by the joint's number.
   using TwinOf = std::function<const MotionDriven&(std::size_t joint)>;
-  /// Adds the samples of all joints at one time. Call this function after MotionDriven::move() and bear() of all twins
-  /// with these samples.
+  /// Adds the samples of all joints at one time. All twins must have made their step with these samples before.
   void add(const std::vector<MotionSample>& samples, const TwinOf& twin);
 
   /// Load of the arm by the joints for which `counts` is true. Only joints with a measured current can count.
@@ -67,8 +66,7 @@ public:
     double left{ 1.0 };  ///< share of the currents that the causes do not explain, rms [-]
     double cost{};       ///< negative logarithm of a likelihood that allows for errors of the models [-]
   };
-  /// How well the arm explains the currents of the joints for which `counts` is true, with the best payload and
-  /// mounting.
+  /// How well the arm explains the currents of joints for which `counts` is true, with the best payload and mounting.
   Fit explained(const std::vector<bool>& counts);
   /// The least Fit::cost that any arm can have: that of usual causes which explain all currents.
   static double leastCost();

@@ -29,8 +29,7 @@ constexpr std::uint64_t MIN_ROWS = 100;
 constexpr double UNCHANGED = 2.0;       // longest motion in which a measured current stays constant [s]
 constexpr double LEAST_SQUARE = 1e-12;  // least assumed square of an uncertainty; simulated data may have none
 
-/// Text on the lag of the currents behind the motion [s], for example "0.2 s later". `longest`: longest lag that the
-/// fit tries [s].
+/// Text on the lag of currents behind the motion [s], for example "0.2 s later". `longest`: longest tried lag [s].
 std::string lagText(double lag, double longest)
 {
   const bool is_longest = std::abs(lag) > longest - 0.5 * CurrentLag::SPACING;
@@ -42,8 +41,7 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// Whether the factor of current over load is farther from 1 than gains of one type, and payloads with which joints can
-/// be judged, can cause.
+/// Whether gains of one type, and payloads with which joints can be judged, cannot make the factor current / load.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;
@@ -295,8 +293,8 @@ EffortFit RecordingFit::effort() const
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    // The weight of a joint is its load, not the certainty of its slope, because a current that never changes has the
-    // most certain slope.
+    // The weight of a joint is its load, not the certainty of its slope, which is best for a current that never
+    // changes.
     double weight = 0.0;
     const FittedFactor slope = joint.lag.now().slope(weight);
     if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)

@@ -24,10 +24,8 @@ constexpr double SLOW_ROWS = 0.06;
 /// from row to row if the stamps are in seconds [s].
 double likelyTimeScale(double period);
 
-/// Name of the unit in messages, for example "the motor's current in A".
-const char* effortUnitName(EffortUnit unit);
-/// Keyword of the unit in the configuration.
-const char* effortKeyword(EffortUnit unit);
+const char* effortUnitName(EffortUnit unit);  ///< name of the unit in messages, for example "the motor's current in A"
+const char* effortKeyword(EffortUnit unit);   ///< keyword of the unit in the configuration
 
 /// A contradiction in a recording of an arm, or a fact that limits what the recording shows.
 struct RecordingFinding
@@ -61,8 +59,8 @@ struct EffortFit
 
 /// Checks whether the rows of an arm fit together: angles with velocities and stamps, and currents with the load.
 ///
-/// The rows are those of all joints, live or from a recording. The findings are from the last minutes of motion.
-/// update() neither throws nor allocates.
+/// The rows are live or from a recording. Findings are on the last minutes of motion. update() never throws or
+/// allocates.
 class RecordingFit
 {
 public:

@@ -29,8 +29,7 @@ constexpr double LARGEST = 100.0;        // largest angle in a program, for join
 constexpr double LONGEST_REST = 3600.0;  // longest rest after a move [s]
 constexpr const char* MOVES = "moves";
 
-/// Reads the moves of a program. A speed, acceleration, jerk or wait at the top of the file holds for each move that
-/// does not give its own value.
+/// Reads the moves of a program. A speed, acceleration, jerk or wait at the top of the file holds for moves without it.
 class ProgramReader
 {
 public:
@@ -225,8 +224,7 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// Says which joint would turn faster than three times its speed limit. Set points of a controller can be slightly
-/// above the limit itself.
+/// Says which joint would turn at over three times its speed limit. A controller's set points can exceed it slightly.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
   constexpr double TIMES = 3.0;  // largest allowed speed over the joint's speed limit [-]
@@ -481,8 +479,7 @@ std::string MotionLimits::errors(const std::vector<ArmSetPoint>& points)
   {
     ArmMotion piece({ points[k - 1], points[k] }, ArmAccelerations::OF_CUBICS);
     const double length = points[k].time - points[k - 1].time;
-    // The acceleration of a cubic is largest at its ends. The checked times lie just inside these ends, where the next
-    // cubic has no effect.
+    // The acceleration of a cubic is largest at its ends. The checked times lie just inside, away from the next cubic.
     for (const double share : { 1e-6, 0.5, 1.0 - 1e-6 })
     {
       piece.at(points[k - 1].time + share * length, motion);

@@ -12,9 +12,9 @@
 namespace hjt
 {
 /// Reads set points from a CSV file, or from a program of moves if the path ends with .yaml. The CSV file is a
-/// recording of a controller, or a motion that `joint_twin checkup` wrote. The CSV file has the columns `timestamp` or
-/// `time` [s], `target_q_0` and so on [rad], and optionally `target_qd_0` and `target_qdd_0` and so on. @throws
-/// InputError, ParameterError.
+/// recording of a controller, or a motion that `joint_twin checkup` wrote. Its columns are `timestamp` or `time` [s],
+/// `target_q_0` and so on [rad], and optionally `target_qd_0`, `target_qdd_0` and so on. @throws InputError,
+/// ParameterError.
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
 /// Computes missing speeds and accelerations from differences of the angles. If the speeds are missing, a joint rests
@@ -32,8 +32,7 @@ double straightenTimes(std::vector<ArmSetPoint>& points);
 std::string straightenedText(double change);
 
 /// Says why the arm cannot follow the set points; empty: it can. The times must increase and end within a million
-/// seconds. The angles must lie in the joint's range, and the speeds must not exceed three times the joint's speed
-/// limit.
+/// seconds. The angles must lie in the joint's range, and the speeds must not exceed three times the speed limit.
 std::string motionErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm);
 
 /// @throws InputError if there is no set point, for the reasons that motionErrors() gives, or if a joint cannot bear
@@ -44,8 +43,8 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription&
 void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 
 /// Checks the torques that the accelerations of a motion need. Links and payload may need at most
-/// ArmJoint::torque_limit. Links, payload and the motor's own inertia together may need at most the torque limit of the
-/// motor. The class neglects friction.
+/// ArmJoint::torque_limit. With the motor's inertia they may need at most the motor's torque limit. The class neglects
+/// friction.
 class MotionLimits
 {
 public:
@@ -54,8 +53,8 @@ public:
 
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// Says which joint would first exceed a limit, and when, if the angles follow cubics between the set points; empty:
-  /// no joint would.
+  /// Says which joint first exceeds a limit, and when, if angles follow cubics between the set points; empty: none
+  /// does.
   std::string errors(const std::vector<ArmSetPoint>& points);
 
 private:

@@ -42,8 +42,7 @@ double UnitLoads::linksMass() const
   return mass;
 }
 
-/// Changes `at` from the motion of the link before to that of `link`. `motion`: motion of the joint that carries
-/// `link`.
+/// Changes `at` from the motion of the link before to that of `link`. `motion`: motion of the joint before `link`.
 void UnitLoads::follow(const Link& link, const JointMotion& motion, Motion& at)
 {
   const Eigen::Vector3d axis = at.orientation * link.axis;
@@ -152,8 +151,7 @@ void UnitLoads::torques(const std::vector<JointMotion>& motion, Eigen::MatrixXd&
       // part is the load by a unit moment. The quadratic part is that of the payload's inertia.
       const Eigen::Vector3d arm = tip.orientation.col(axis);
       columns(row, 1 + axis) = joint.effort(tip.swing(arm), tip.place, arm.cross(of_mass));
-      // Load by the weight of the mass after the joint, in a unit gravity along `axis`: a torque if the joint turns, a
-      // force if the joint slides.
+      // Load by the mass after the joint in a unit gravity along `axis`: a torque if the joint turns, else a force.
       const Eigen::Vector3d up = -Eigen::Vector3d::Unit(axis);
       columns(row, 4 + axis) = joint.turns ? joint.axis.dot((joint.moment - joint.mass * joint.origin).cross(up)) :
                                              joint.mass * joint.axis.dot(up);

@@ -17,8 +17,7 @@ constexpr double UNWITNESSED = 0.06;
 /// whose factor has this standard deviation or more has no witnesses.
 constexpr double NO_WITNESS = 0.05;
 
-/// Least number of joints that can confirm a common factor.
-constexpr std::size_t MIN_WITNESSES = 3;
+constexpr std::size_t MIN_WITNESSES = 3;  ///< least number of joints that can confirm a common factor
 
 /// Number of joints from base to elbow, of all `joints` of an arm. The other joints are the wrists.
 inline std::size_t jointsToElbow(std::size_t joints)
@@ -77,8 +76,7 @@ struct ArmFriction
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged. `joint`: misfit of the joint itself, `arm`: misfit of all joints, which counts if `joint`
-/// is empty. If the efforts of the arm have wrong signs, `arm` replaces a wrong load as the reason, because wrong signs
-/// explain that load.
+/// is empty. Wrong signs of the arm's efforts replace a wrong load as the reason, because they explain it.
 inline const Misfit& misfitOf(const Misfit& joint, const Misfit& arm)
 {
   const bool is_sign = joint.reason == Reason::LOAD_WRONG && arm.reason == Reason::EFFORT_NOT_CURRENT;

@@ -48,8 +48,8 @@ private:
 };
 
 /// One LoadRegression for each of several lags of the current behind the motion. At most one row in 20 ms counts.
-/// Between rows the motion is interpolated linearly. Only motion faster than MotionDifferentiator::SLIDING counts.
-/// Nothing allocates.
+/// Motion between rows is interpolated. Only motion faster than MotionDifferentiator::SLIDING counts. Nothing
+/// allocates.
 class CurrentLag
 {
 public:
@@ -90,8 +90,7 @@ public:
     return left;
   }
 
-  /// The regression for the lag 0.
-  const LoadRegression& now() const { return regressions_[LAGS / 2]; }
+  const LoadRegression& now() const { return regressions_[LAGS / 2]; }  ///< the regression for the lag 0
 
 private:
   static constexpr double PERIOD = 0.019;  // least time between two rows that count [s]
@@ -107,8 +106,7 @@ private:
   };
   const Row& at(std::uint64_t index) const noexcept { return rows_[index % ROOM]; }
 
-  /// Adds to each regression the current of the middle row of the held rows, with the motion earlier by the lag of the
-  /// regression.
+  /// Adds to each regression the current of the middle held row, with the motion earlier by the lag of the regression.
   void take() noexcept
   {
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);

@@ -27,8 +27,8 @@ public:
     ++end_;
   }
 
-  /// The last value whose time is not later than `time` [s] and that is not older than `max_age` [s]; none: there is no
-  /// such value.
+  /// The last value from `time` [s] or earlier that is at most `max_age` [s] old at `time`; none: there is no such
+  /// value.
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
     for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)
@@ -44,12 +44,11 @@ public:
 
   void clear() noexcept { begin_ = end_; }
 
-  /// Marks all values so far as values for rows that have arrived.
-  void mark() noexcept { marked_ = end_; }
+  void mark() noexcept { marked_ = end_; }  ///< marks all values so far as values for rows that have arrived
 
   /// Call this function when the time of the rows jumps back. Forgets the values up to the mark, and the values after
-  /// the mark up to the first one whose time is before `earliest` [s]. This value and the later ones belong to rows
-  /// that follow.
+  /// the mark up to the first one whose time is before `earliest` [s]. This value and later ones belong to rows to
+  /// come.
   void jumpBack(double earliest) noexcept
   {
     begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
@@ -72,8 +71,7 @@ private:
   std::uint64_t end_{};
 };
 
-/// Received temperatures of one drive. The class counts impossible temperatures and does not use them. Nothing
-/// allocates.
+/// Received temperatures of one drive. The class counts and ignores impossible temperatures. Nothing allocates.
 class TemperatureRecord
 {
 public:
@@ -85,8 +83,8 @@ public:
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// Keeps a temperature [degC] measured at `time` [s]. Refuses numbers that are not finite, and temperatures outside
-  /// of LOWEST ... HIGHEST.
+  /// Keeps a temperature [degC] measured at `time` [s]. Refuses infinities, NaN, and temperatures beyond LOWEST and
+  /// HIGHEST.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))

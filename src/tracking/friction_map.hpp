@@ -26,8 +26,8 @@ struct FrictionShares
 /// Table of the twin's friction over speed and load. The full ring makes the table once, so that the twin can follow a
 /// motion of hours in seconds.
 ///
-/// The table has no errors of manufacture. Such errors change the ripple of the friction over a tooth pitch, not the
-/// mean friction.
+/// The table has no errors of manufacture. Such errors change the ripple of the friction, not its mean over a tooth
+/// pitch.
 class FrictionMap
 {
 public:

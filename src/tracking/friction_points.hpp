@@ -59,8 +59,7 @@ public:
   std::uint64_t count() const { return blocks_ + (open_.head<2>().sum() > 0.0 ? 1 : 0); }
 
   /// Relative standard deviation of FrictionPoints::ratio() by the scatter of the blocks [-]; infinite: fewer than
-  /// three blocks. A block adds the square of (part of the numerator - ratio x part of the denominator) to the
-  /// variance.
+  /// three blocks. A block adds (part of the numerator - ratio x part of the denominator)^2 to the variance.
   double deviation() const
   {
     FrictionBlocks all = *this;
@@ -122,7 +121,7 @@ public:
   static constexpr std::uint64_t MIN_ROWS = 30;  ///< least number of rows of a point
   static constexpr double SLOWEST = 0.01;        ///< least speed of a row that counts [rad/s]
 
-  /// Adds a row. `time` [s]; `speed` [rad/s] and `load` [N.m] with sign; `measured`, `twin`: friction, > 0 against the
+  /// Adds a row at `time` [s]. `speed` [rad/s], `load` [N.m]: with sign. `measured`, `twin`: friction against the
   /// motion [N.m].
   void add(double time, double speed, double measured, double twin, double load)
   {
@@ -162,12 +161,12 @@ public:
   const FrictionBlocks& blocks() const { return blocks_; }
 
   /// Measured friction over the twin's friction, from the rows of all points. Both directions have equal weight, so
-  /// that a wrong load has no effect. The deviation is the larger of two: that by FrictionBlocks, and that by a
-  /// jackknife over the points.
+  /// that a wrong load has no effect. The deviation is the larger of those by FrictionBlocks and by a jackknife over
+  /// points.
   FrictionRatio ratio() const { return ratio(points()); }
 
-  /// Measured friction over that of `reference`, at the speeds that both have, because the friction of joint and twin
-  /// may rise differently with the speed.
+  /// Measured friction over that of `reference`, at common speeds, because joint and twin may differ in the rise with
+  /// speed.
   FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
   {
     return ratio(common(points(), reference));

@@ -80,8 +80,7 @@ FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings)
     const double rest = rows(static_cast<Eigen::Index>(i), 2) - line.dot(at);
     left += std::pow(rest / recording.deviation, 2);
   }
-  // Degrees of freedom: number of recordings - 2 for mean and slope - the part of the response that the recordings
-  // determine.
+  // Degrees of freedom: recordings - 2 for mean and slope - the part of the response that the recordings determine.
   const double of_known_answer = inverse(1, 1) / (OTHER_ANSWER * OTHER_ANSWER);
   const double freedom = static_cast<double>(trend.recordings - 3) + of_known_answer;
   const double scatter = std::max(1.0, left / freedom);

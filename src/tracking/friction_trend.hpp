@@ -53,8 +53,7 @@ private:
   double halfWidth() const { return NORMAL_95 * deviation; }
 };
 
-/// Fits the trend. The slope is not known with fewer than MIN_RECORDINGS recordings, or if all recordings have the same
-/// time.
+/// Fits the trend. Its slope is not known with fewer than MIN_RECORDINGS recordings, or if all have the same time.
 FrictionTrend frictionTrend(const std::vector<DatedFriction>& recordings);
 
 /// Logarithm of the common friction factor of a group of joints in each recording. The function subtracts from the

@@ -30,17 +30,14 @@ constexpr double LOAD_SHARE = 0.054;
 /// Relative standard deviation of the friction that a controller expects of a sound joint [-].
 constexpr double CONTROLLER_SHARE = 0.05;
 
-/// Least friction factor that a fault of severity 1 causes [-].
-constexpr double LEAST_OF_FAULTS = 0.5;
+constexpr double LEAST_OF_FAULTS = 0.5;  // least friction factor that a fault of severity 1 causes [-]
 
-/// Friction factor below which a joint has no friction [-].
-constexpr double NO_FRICTION = 0.1;
+constexpr double NO_FRICTION = 0.1;  // friction factor below which a joint has no friction [-]
 
 /// Largest half width of the interval of a friction factor's logarithm with which the friction can be judged [-].
 constexpr double WIDEST = 0.4;
 
-/// Largest common friction factor that a change of temperature can cause [-].
-constexpr double MAX_ARM_FRICTION = 2.5;
+constexpr double MAX_ARM_FRICTION = 2.5;  // largest common friction factor that a change of temperature can cause [-]
 
 constexpr std::size_t MIN_POINTS = 3;
 
@@ -73,8 +70,8 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
 
 using Gap = std::pair<Reason, std::string>;  // a reason for a missing verdict, and this reason as a sentence
 
-/// Says why the points give no friction factor; SOUND: they give one. `is_to_own`: whether the reference is that of the
-/// joint itself.
+/// Says why the points give no friction factor; SOUND: they give one. `is_to_own`: whether the reference is
+/// OwnReference.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
@@ -157,8 +154,7 @@ bool isUnshown(Reason reason)
 }
 
 /// Relative standard deviation of the ratio of a sound joint's friction in one recording to its mean in the recordings
-/// of the reference [-]. `stated`: assumed value for the ratio of two recordings [-], with the weight of STATED_COUNT
-/// recordings.
+/// of the reference [-]. `stated`: assumed value for two recordings [-], with the weight of STATED_COUNT recordings.
 double repeatDeviation(double stated, const OwnReference& own)
 {
   constexpr double STATED_COUNT = 3.0;

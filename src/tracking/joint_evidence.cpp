@@ -87,8 +87,7 @@ JointEvidence::Row JointEvidence::judge(const MotionSample& sample, bool fits) n
   return fits && watchSignals(sample) ? Row::WINDOW : Row::COUNTED;
 }
 
-/// Adds a row to MotionReach. Returns the time since the row before [s], or 0 for the first row and the first row after
-/// a gap.
+/// Adds a row to MotionReach. Returns the time since the row before [s], or 0 for the first row, also after a gap.
 double JointEvidence::addToReach(const MotionSample& sample) noexcept
 {
   MotionReach& reach = now_.reach;
@@ -111,8 +110,7 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-/// Adds a row to the sums for loadFactor(). Rows during and after a contact count too, because a wrong gain can look
-/// like a contact.
+/// Adds a row to the sums for loadFactor(). Rows of a contact count too, because a wrong gain can look like a contact.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
   if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())

@@ -70,8 +70,7 @@ public:
 
   std::uint64_t rows() const { return static_cast<std::uint64_t>(regression_.rows()); }
 
-  /// Mean torsions in the order of the torques. An offset is subtracted, so that they are 0 where the twin's torsion is
-  /// 0.
+  /// Mean torsions in the order of the torques. They are shifted so as to be 0 where the twin's torsion is 0.
   std::vector<TorsionMean> means() const
   {
     std::vector<TorsionMean> means;
@@ -110,8 +109,7 @@ public:
 private:
   static constexpr int STEPS = 142;            // number of steps of the torque from 0 to the largest load [-]
   static constexpr double MIN_VARIED = 20e-6;  // least standard deviation of the twin's torsion for a result [rad]
-  // Columns of the regression. Column 0 is a constant, column 1 the direction of turning. The fit does not use the
-  // columns COSINE and SINE.
+  // Columns of the regression: 0 is a constant, 1 the direction of turning. The fit does not use COSINE and SINE.
   static constexpr int TWIN = 2;
   static constexpr int COSINE = 3;
   static constexpr int SINE = 4;
@@ -155,8 +153,7 @@ public:
   /// Sets the reference, from the joint when it was sound. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins) { assessor_.setReference(std::move(bins)); }
 
-  /// Takes a sample whose load includes weight and inertia. Returns true if the sample completed a window of the
-  /// indicators.
+  /// Takes a sample whose load includes weight and inertia. Returns true if it completed a window of the indicators.
   bool update(const MotionSample& sample) noexcept
   {
     SignalSample signal;
@@ -388,7 +385,7 @@ public:
     WINDOW  ///< the row counts and completed a window of the signals
   };
 
-  /// Takes a sample whose load includes weight and inertia. `fits`: whether the sample counts for the windows of the
+  /// Takes a sample whose load includes weight and inertia. `fits`: whether the sample counts for windows of the
   /// signals.
   Row update(const MotionSample& sample, bool fits = true) noexcept
   {
@@ -399,12 +396,9 @@ public:
   const MotionPrediction& predict(const MotionSample& sample) noexcept { return predicted_ = twin_.step(sample); }
   Row judge(const MotionSample& sample, bool fits) noexcept;
 
-  /// Clears the sums, but keeps the reference of the signals and the state of the contact.
-  void forget() noexcept;
-  /// Clears everything, because rows of another recording follow.
-  void reset() noexcept;
-  /// Clears only the windows of the signals.
-  void resetSignals() noexcept { health_.reset(); }
+  void forget() noexcept;  ///< clears the sums, but keeps the reference of the signals and the state of the contact
+  void reset() noexcept;   ///< clears everything, because rows of another recording follow
+  void resetSignals() noexcept { health_.reset(); }  ///< clears only the windows of the signals
 
   LoadOrigin loadOrigin() const { return load_; }
   const EvidenceParameters& parameters() const { return parameters_; }
@@ -413,8 +407,8 @@ public:
   const MotionPrediction& predicted() const { return predicted_; }  ///< prediction for the last row
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
-  /// As friction(), but FrictionPoint::twin is the friction that the arm's controller expects, from its target current.
-  /// Only rows with a target current count.
+  /// As friction(), but with FrictionPoint::twin by the controller's target current. Rows without this current do not
+  /// count.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return torsion_; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
@@ -431,8 +425,7 @@ public:
   /// Root mean square of the residual [A] after subtraction of the constant and of the multiple of the predicted
   /// friction that fit best. So a constant load, wear and cold grease do not count.
   double unexplainedRms() const;
-  /// Measured over predicted current for load and inertia, without the current for friction [-]; NaN: the current for
-  /// load and inertia is too small.
+  /// Measured over predicted current for load and inertia, without friction [-]; NaN: the predicted one is too small.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< mean temperature of the rows [degC]
   /// Whether more than half of the rows had a received temperature.

@@ -21,8 +21,7 @@ struct MotionRow
   double recorded_velocity{ std::numeric_limits<double>::quiet_NaN() };  ///< recorded speed; NaN: not recorded [rad/s]
   double received{};     ///< time of arrival, with the same zero as `time` [s]
   double stamp_error{};  ///< `time` - time of the angles and the current [s]
-  /// Torque at the output by the vibration of the links, which `load` does not contain [N.m].
-  double vibration{};
+  double vibration{};    ///< torque at the output by the vibration of the links, which `load` does not contain [N.m]
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };  ///< temperature of the drive; NaN: not measured [degC]
@@ -43,8 +42,7 @@ struct MotionSample : MotionRow
   bool after_gap{};       ///< whether this sample is the first one after a gap
 };
 
-/// Computes speed and acceleration from a stream of angles. The times between rows may differ; rows may be repeated or
-/// missing.
+/// Computes speed and acceleration from a stream of angles. Rows may be uneven in time, repeated or missing.
 ///
 /// For each row the class fits a parabola by least squares to the rows within the half width before and after this row,
 /// and to at least two rows on each side. The fit corrects the times of the rows by MotionRow::stamp_error. A sample is

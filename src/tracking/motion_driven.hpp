@@ -45,14 +45,12 @@ inline double currentPerEffort(const Parameters& parameters) noexcept
 
 /// Ripple of the motor torque that the kinematic error causes, as a torque at the joint.
 ///
-/// On a load that does not move, each line would be a torque K e: stiffness K of the joint times amplitude e of the
-/// line. A real load oscillates on this stiffness, with the resonance w0 and the damping ratio z, so the torque T of
-/// the line in the gear is
+/// On a load that does not move, a line would be a torque K e: stiffness K of the joint x amplitude e of the line. A
+/// real load oscillates on K with the resonance w0 and the damping ratio z, so the torque of the line in the gear is
 ///   T = K e (-w^2) / (w0^2 - w^2 + 2 i z w0 w),   w = order times the joint's speed.
 /// At rest there is no ripple, because the load follows the kinematic error. There are four lines: two and four waves
-/// per turn of the motor against the circular spline, which turns with the output, and two and four waves per turn
-/// against the flexspline. The lines are known up to the joint speed telemetry.ripple_fastest. Above this speed at()
-/// returns 0.
+/// per turn of the motor against the circular spline, which turns with the output, and as many against the flexspline.
+/// Above the joint speed telemetry.ripple_fastest at() returns 0, because the lines are not known there.
 class TorqueRipple
 {
 public:
@@ -86,20 +84,19 @@ public:
     return sum;
   }
 
-  /// Orders of the lines per turn of the joint: two waves against circular spline and flexspline, then four waves
-  /// against each.
+  /// Orders of the lines per turn of the joint: two waves against circular spline and flexspline, then four against
+  /// each.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment [rad^2/s^2]. `response`: resonance [Hz], damping ratio [-],
-  /// lag [s].
+  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment [rad^2/s^2]. `response`: resonance [Hz], damping [-], lag
+  /// [s].
   static std::complex<double> stiffness(double w, const double* response) noexcept
   {
     const double natural = TWO_PI * response[0];
     return { natural * natural - w * w, 2.0 * response[1] * natural * w };
   }
 
-  /// Torque in the gear by a line with K e = 1 N.m, for each line. The real part is that of a cosine line, the
-  /// imaginary part that of a sine line.
+  /// Torque in the gear by each line if K e = 1 N.m; real part: by a cosine line, imaginary part: by a sine line.
   static Waves waves(const Orders& orders, double position, double velocity, const double* response) noexcept
   {
     Waves turned;
@@ -187,8 +184,7 @@ struct MotionPrediction
 ///       T_f friction at the motor shaft (FrictionMap); s: share of T_f that has built up (Presliding)
 ///       T_r torque ripple by the kinematic error (TorqueRipple); gain, offset: torque_per_current, current_offset
 ///
-/// The load of a sample includes all torques at the output, with inertia and weight. A step takes some hundred
-/// nanoseconds; nothing allocates.
+/// The load of a sample includes inertia and weight. A step takes some hundred nanoseconds; nothing allocates.
 class MotionDriven
 {
 public:
@@ -251,8 +247,7 @@ public:
     return ratio_ * friction_.atViscosity(ratio_ * velocity, load, viscosity(temperature)).sum();
   }
 
-  /// Torque of the configured weight and inertia in a motion, for recordings without a load; > 0 resists positive
-  /// motion [N.m].
+  /// Torque of configured weight and inertia, for recordings without a load; > 0 resists positive motion [N.m].
   double modelledLoad(const MotionSample& sample) const noexcept { return ownTorque(load_, sample); }
 
 private:
@@ -306,8 +301,8 @@ private:
   bool started_{};
 };
 
-/// The whole twin driven by a measured motor current in open loop: predicts the motion. The differences between twin
-/// and robot grow with time.
+/// The whole twin, driven by a measured motor current, predicts the motion. Its differences from the robot grow with
+/// time.
 ///
 /// The current of a sample drives the twin from the sample's time on. The weight is that at the measured angle, so that
 /// the weight stays right if the twin's angle drifts away. At the first sample, and at the first one after a gap, the

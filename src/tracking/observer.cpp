@@ -81,8 +81,7 @@ Observer::Observer(const Parameters& parameters)
   }
 }
 
-/// Starts the filter at rest under the measured load. The covariance is so large that the first rows determine speeds
-/// and disturbance torque.
+/// Starts the filter at rest under the load. With the large covariance the first rows determine speeds and disturbance.
 void Observer::start(const Measurement& measurement) noexcept
 {
   const double load = measurement.load_torque - load_.gravityTorque(measurement.output_angle);
@@ -163,8 +162,7 @@ double Observer::preslide(double most, double free, double response) noexcept
   return growth / (1.0 + response * growth);
 }
 
-/// Corrects the state by one measured angle with the standard deviation `noise` [rad]. Returns measured - expected
-/// angle [rad].
+/// Corrects the state by an angle with the standard deviation `noise` [rad]. Returns measured - expected angle [rad].
 double Observer::correct(ObserverPiece::State angle, double measured, double noise) noexcept
 {
   const double innovation = measured - state_[angle];

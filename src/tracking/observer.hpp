@@ -14,8 +14,7 @@
 namespace hjt
 {
 /// Linear model of the joint over one step, with one local stiffness: (x after the step) = transition * x + input *
-/// (motor torque, output torque). The state x is: angle and speed of the motor, angle and speed of the output,
-/// disturbance torque at the motor.
+/// (motor torque, output torque). The state x is: angle and speed of motor and output, disturbance torque at the motor.
 struct ObserverPiece
 {
   using Vector = Eigen::Matrix<double, 5, 1>;

@@ -37,8 +37,7 @@ YAML::Node readData(const std::string& directory, const char* name)
   }
 }
 
-/// Reads the numbers `names` of a comparison. A number is NaN if its value in the file is null, or if an older file
-/// lacks the number.
+/// Reads the numbers `names` of a comparison. A number is NaN if it is null in the file, or if an older file lacks it.
 template <std::size_t N>
 std::array<double, N> readNumbers(const std::string& directory, const std::array<const char*, N>& names)
 {

@@ -22,8 +22,7 @@ struct SoundJoint
   std::vector<ReferenceBin> baseline;  ///< reference of the signals; empty: the recordings were too short
 };
 
-/// Name or file of the arm of a report, as the user gave it to make the report. @throws InputError if the directory
-/// holds no report of an arm.
+/// Name or file of a report's arm, as the user gave it. @throws InputError if the directory holds no report of an arm.
 std::string armOfReport(const std::string& directory);
 
 /// Reads the reports on one or more recordings of a sound joint. The friction at each speed is the mean over the

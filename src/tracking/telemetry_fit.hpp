@@ -15,9 +15,9 @@
 
 namespace hjt
 {
-/// Checks whether motor and joint turn by the configured ratio. The ratio that the class finds is the slope of the
-/// motor angle over the joint angle, by least squares from the changes from row to row, so that a constant torsion has
-/// no effect. Only text() allocates.
+/// Checks whether motor and joint turn by the configured ratio. The found ratio is the slope of the motor angle over
+/// the joint angle, by least squares from changes between rows, so that a constant torsion has no effect. Only text()
+/// allocates.
 class RatioFit
 {
 public:
@@ -120,8 +120,7 @@ public:
     has_velocity_ = has_velocity_ || std::isfinite(velocity);
   }
 
-  /// Change of the angles over the integral of the velocities [-]. 1: angles and velocities agree; infinite: the
-  /// velocities are zero.
+  /// Change of the angles over the integral of the velocities [-]; 1: both agree; infinite: the velocities are zero.
   FittedFactor factor() const noexcept
   {
     const std::size_t count = std::min<std::uint64_t>(windows_, KEPT);

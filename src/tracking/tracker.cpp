@@ -16,8 +16,7 @@ namespace hjt
 {
 namespace
 {
-/// Half width of a band, in standard deviations [-].
-constexpr double DEVIATIONS = 3.0;
+constexpr double DEVIATIONS = 3.0;  // half width of a band, in standard deviations [-]
 
 /// Whether a load of this source contains all torques at the output, including weight and inertia.
 bool holdsAll(LoadSource source)
@@ -93,8 +92,7 @@ void Tracker::pushLoad(double time, double torque) noexcept
   }
 }
 
-/// The last received load whose time is not after `time` [N.m]; none: no load was received by then, or telemetry.load
-/// is `model`.
+/// Last load received for `time` or before [N.m]; none: there is no such load, or telemetry.load is `model`.
 std::optional<double> Tracker::loadAt(double time) const noexcept
 {
   return load_source_ == LoadSource::MODEL ? std::nullopt : loads_.at(time);
@@ -178,8 +176,8 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   now.temperature_received = is_temperature_received;
   now.housing_temperature = grease_.housing(prediction_temperature);
   now.after_gap = sample.after_gap;
-  // The evidence uses the received temperature near the motor, as `compare` does. The comparison uses the temperature
-  // of the grease.
+  // The evidence uses the received temperature near the motor, as `compare` does. The comparison uses that of the
+  // grease.
   evidence_.predict(sample);
   sample.temperature = prediction_temperature;
   if (torque_driven_)

@@ -53,8 +53,7 @@ public:
     rows_[end_ % ROOM] = { time, leading - leading_mean_, lagging - lagging_mean_ };
     ++end_;
 
-    // The lagging signal counts at a time in the middle of the held rows, so that the leading signal is known before
-    // and after this time.
+    // The lagging signal counts at a time in the middle of the held rows. So rows before and after this time are known.
     const double middle = time - LONGEST;
     const std::uint64_t oldest = std::max(begin_, end_ > ROOM ? end_ - ROOM : 0);
     if (at(oldest).time > middle - LONGEST)
@@ -85,8 +84,7 @@ public:
     }
   }
 
-  /// Lag of `lagging` behind `leading` [s]. None: too few rows, a correlation below MIN_CORRELATION, or the largest
-  /// correlation at the longest lag.
+  /// Lag of `lagging` behind `leading` [s]. None: too few rows, a correlation below MIN_CORRELATION, or no peak.
   std::optional<double> lag() const noexcept
   {
     std::size_t best = 0;
@@ -167,8 +165,7 @@ struct Comparison
   bool sticking{};               ///< whether friction holds the joint, so that any current within the band is possible
   bool after_gap{};              ///< whether this row is the first one after a gap in the telemetry
 
-  /// Measured - predicted current, as a torque at the joint [N.m].
-  double residual_torque{};
+  double residual_torque{};  ///< measured - predicted current, as a torque at the joint [N.m]
   bool isOutside() const noexcept { return std::abs(current.residual()) > current.band && current.band > 0.0; }
 };
 
@@ -207,8 +204,7 @@ public:
   /// telemetry.load says. Ignores a number that is not finite.
   void pushLoad(double time, double torque) noexcept;
 
-  /// Sets the temperature of the drive from `time` [s] on, for rows without a temperature [degC]. Refuses and counts
-  /// impossible temperatures.
+  /// Sets the drive's temperature [degC] from `time` [s] on, for rows without one. Refuses and counts impossible ones.
   void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
   /// Sets the estimated temperature for rows without a received temperature [degC]; none: the configured temperature.
@@ -216,8 +212,7 @@ public:
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. This function
-  /// allocates.
+  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. It allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
   /// Takes a row of telemetry and ignores MotionRow::load. Call pop() afterwards.
@@ -246,8 +241,8 @@ public:
   /// Clears the evidence, so that only later rows count for the next verdict.
   void forgetEvidence() noexcept { evidence_.forget(); }
 
-  /// Lag of a measured signal behind its prediction [s]: of the current in mode `motion`, of the speed in mode
-  /// `torque`. None in mode `observer`.
+  /// Lag of the measured current (mode `motion`) or speed (mode `torque`) behind the predicted one [s]; none: not
+  /// known.
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Indicators of the measured joint, from its own signals.

@@ -286,8 +286,8 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    // If the reference is that of the joint itself, it may have the same wrong gain, so that only a change of the
-    // friction shows a wrong gain.
+    // A reference from the same joint may have the same wrong gain, so only a change of the friction shows a wrong
+    // gain.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);

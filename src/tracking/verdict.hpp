@@ -18,9 +18,8 @@
 
 namespace hjt
 {
-/// Relative increase, and relative decrease, of a joint's friction against its own earlier friction that a verdict
-/// ignores even if the change is certain [-]. The bound for a decrease is wider, because no fault takes away a fifth of
-/// the friction.
+/// Relative increase and decrease of a joint's friction from its own earlier friction that a verdict ignores, however
+/// certain it is [-]. The bound for a decrease is wider, because no fault takes away a fifth of the friction.
 constexpr double MORE_THAN_OWN = 0.05;
 constexpr double LESS_THAN_OWN = 0.10;
 
@@ -48,9 +47,8 @@ struct FrictionFactor
   std::string why_not;             ///< `reason` as a sentence; empty: the friction is judged
 
   bool isJudged() const { return reason == Reason::SOUND; }
-  /// Ends of the 95 % interval.
-  double low() const { return value * std::exp(-halfWidth()); }
-  double high() const { return value * std::exp(halfWidth()); }
+  double low() const { return value * std::exp(-halfWidth()); }  ///< lower end of the 95 % interval
+  double high() const { return value * std::exp(halfWidth()); }  ///< upper end of the 95 % interval
 
 private:
   double halfWidth() const { return NORMAL_95 * deviation; }
@@ -230,11 +228,10 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
 /// Sentence on the causes of a finding; empty: no signatures of faults are known.
 std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 
-/// Makes a sentence of a clause.
-std::string sentence(std::string clause);
+std::string sentence(std::string clause);  ///< makes a sentence of a clause
 
-/// WARN if the magnitude of `deviation` exceeds `tolerance`, ERROR if this magnitude exceeds `tolerance` times
-/// `error_factor`, otherwise OK.
+/// WARN if |deviation| exceeds `tolerance`, ERROR if |deviation| exceeds `tolerance` times `error_factor`, otherwise
+/// OK.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
 Verdict judge(const JointEvidence& evidence, const JointContext& context);
@@ -274,15 +271,13 @@ struct SoundFriction
 /// recordings. Without recordings the reference is empty.
 OwnReference ownReference(const std::vector<SoundFriction>& recordings);
 
-/// Judges the friction: WARN if the whole interval of the friction factor lies beyond the bound. Sets factor, text and
-/// figures of the friction in `verdict`.
+/// Judges the friction: WARN if its whole interval lies beyond the bound. Sets the friction's factor, text and figures.
 Finding judgeFriction(const JointEvidence& evidence, const JointContext& context, Verdict& verdict);
 
 /// Adds to the causes of `finding` the faults that move the indicator in the direction `way`, +1 or -1.
 void nameCauses(const JointEvidence& evidence, ScalarIndicator indicator, double way, Finding& finding);
 
-/// Clause that says what may be wrong with a load of this origin.
-const char* wrongLoad(LoadOrigin load);
+const char* wrongLoad(LoadOrigin load);  ///< clause that says what may be wrong with a load of this origin
 
 /// Distinguishes a wrong gain of the current from a change of friction. With a wrong gain, the current for load and
 /// inertia and the current for friction differ from their predictions by the same factor.
@@ -299,12 +294,10 @@ struct GainEvidence
     return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
   }
 
-  /// Whether the factor of the friction is nearer to the factor of the load than to 1. If not, a wrong load is as
-  /// likely as a wrong gain.
+  /// Whether the factor of the friction is nearer to that of the load than to 1. If not, a wrong load is as likely.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
-  /// Misfit by a wrong gain; empty: the factors of load and friction differ, the factor of the load is near 1, or the
-  /// load is too small to show its factor.
+  /// Misfit by a wrong gain; empty: both factors differ, that of the load is near 1, or the load is too small.
   Misfit misfit() const
   {
     constexpr double NOTEWORTHY = 0.2;  // least deviation of a gain that counts; gains of one type deviate by less [-]

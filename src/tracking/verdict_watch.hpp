@@ -33,8 +33,7 @@ public:
   /// Friction of the rows in the present evidence. `joint_twin compare` measures the friction in the same way.
   MeasuredFriction measuredFriction() const { return hjt::measuredFriction(tracker_.evidence(), context()); }
 
-  /// Sets the temperature for rows without a received temperature to ArmFriction::temperature, which explains the
-  /// friction of all joints.
+  /// Gives rows without a received temperature the temperature that explains the friction of all joints (ArmFriction).
   void predictAt(const ArmFriction& arm)
   {
     if (arm.is_known)
@@ -43,8 +42,7 @@ public:
     }
   }
 
-  /// Judges the present evidence without the other joints.
-  void judge() { judge(context()); }
+  void judge() { judge(context()); }  ///< judges the present evidence without the other joints
   /// Judges the present evidence with the common factors of all joints. `joint`: number of this joint.
   void judge(const ArmFriction& arm, std::size_t joint) { judge(context(&arm, joint)); }
 
@@ -67,8 +65,7 @@ public:
 
   double lastRow() const { return last_row_; }  ///< time of the last row that was judged [s]
 
-  /// The present verdict.
-  const Verdict& confirmed() const { return confirmed_; }
+  const Verdict& confirmed() const { return confirmed_; }  ///< the present verdict
 
   /// The present verdict, or a verdict NOT_JUDGED that says why the joint is not judged at the moment.
   Verdict now() const
@@ -106,8 +103,7 @@ private:
     const bool is_new = confirmed_at_ > reach.end;  // whether the telemetry started again
     Verdict verdict = hjt::judge(tracker_.evidence(), context);
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
-    // A misfit that the rows show replaces the present verdict only after CONFIRMED_AFTER. Too few rows for a verdict
-    // replace no verdict.
+    // A misfit that the rows show replaces the verdict only after CONFIRMED_AFTER. Too few rows replace no verdict.
     const bool is_other =
         !verdict.fits && (verdict.reason == Reason::EFFORT_UNIT || verdict.reason == Reason::LESS_THAN_FAULTS ||
                           verdict.reason == Reason::NO_FRICTION || context.misfit.exists() ||

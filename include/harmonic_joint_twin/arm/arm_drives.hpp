@@ -22,8 +22,8 @@ struct ArmOptions
 };
 
 /// All drives of an arm without a controller. The links couple the drives. The caller commands the motors' torques, as
-/// with a single Twin. The library harmonic_joint_twin_arm contains the class. After construction no function of the
-/// class throws or allocates.
+/// with a single Twin. The library harmonic_joint_twin_arm contains the class. After construction nothing throws or
+/// allocates.
 class ArmDrives
 {
 public:
