@@ -56,14 +56,15 @@ bool isBaseName(const std::string& name)
 void readGains(const std::string& place, FieldReader& fields, JointGains& gains)
 {
   fields(place + ".position", "1/s", gains.position, Range{ 0.0, 1e3 },
-         "speed that the controller demands per error of the angle");
+         "speed that the controller demands per error of the joint angle");
   fields(place + ".speed", "N.m.s/rad", gains.speed, Range{ 0.0, 1e6 },
-         "torque of the controller per error of the speed");
-  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 }, "integral time of the speed control");
+         "torque of the controller per error of the joint speed");
+  fields(place + ".integral_time", "s", gains.integral_time, Range{ 1e-3, 1e6 },
+         "integral time of the control of the joint speed");
   fields(place + ".coulomb", "N.m", gains.coulomb, Range{ -1e4, 1e4 },
          "constant part of the friction that the controller feeds forward");
   fields(place + ".viscous", "N.m.s/rad", gains.viscous, Range{ -1e4, 1e4 },
-         "friction that the controller feeds forward, per speed");
+         "friction that the controller feeds forward, per joint speed");
 }
 
 /// Reads the joints one after the other.
@@ -83,7 +84,7 @@ public:
     }
     if (isMapOrNone(place + ".limits") && holds(map_, place + ".limits"))
     {
-      fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "greatest speed");
+      fields_(place + ".limits.speed", "rad/s", joint.speed_limit, Range{ 1e-3, 100.0 }, "largest speed of the joint");
       fields_(place + ".limits.torque", "N.m", joint.torque_limit, Range{ 1e-3, 1e6 }, "largest torque at the output");
       if (holds(map_, place + ".limits.feedback"))
       {

@@ -22,15 +22,15 @@ struct ArmQuantity
 };
 
 inline constexpr std::array<ArmQuantity, 10> ARM_QUANTITIES{ {
-    { "target_q", "rad", "set point", false },
-    { "target_qd", "rad/s", "set point", false },
-    { "target_qdd", "rad/s^2", "set point", false },
+    { "target_q", "rad", "angle of the set point", false },
+    { "target_qd", "rad/s", "speed of the set point", false },
+    { "target_qdd", "rad/s^2", "acceleration of the set point", false },
     { "target_current", "A", "current of the torque that the controller feeds forward", false },
     { "target_moment", "N.m", "torque of the rigid links along the set point", false },
     { "actual_q", "rad", "angle by the encoder at the output", false },
     { "actual_qd", "rad/s", "speed of the joint: speed by the encoder at the motor, divided by the ratio", false },
     { "actual_current", "A", "current of the motor", false },
-    { "target_TCP_pose", "m", "position of the tool by the set point, in the frame of the base", true },
+    { "target_TCP_pose", "m", "position of the tool at the set points of the joints, in the frame of the base", true },
     { "actual_TCP_pose", "m", "true position of the tool in the frame of the base", true },
 } };
 enum ArmQuantityIndex : std::size_t

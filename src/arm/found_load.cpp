@@ -174,7 +174,7 @@ std::string AssumedLoad::text() const
   {
     const auto parts = std::count_if(changes.begin(), changes.end(), [](const auto& part) { return part.is_found; });
     text += "The payload changes: in " + std::to_string(parts) + " of " + std::to_string(changes.size()) +
-            " parts of the time the currents show " + massText(*payload) + ", in the others " +
+            " parts of the time the currents show " + massText(*payload) + ", in the other parts " +
             (otherwise ? massText(*otherwise) : "the configured " + roundedText(payload->configured.mass, 3) + " kg") +
             ". ";
   }

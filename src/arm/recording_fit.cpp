@@ -77,7 +77,8 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
     return { "velocity_scale", "the angle stands still while the velocity says that the joint moves",
              Reason::VELOCITY_SCALE };
   }
-  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times as fast as recorded",
+  return { "velocity_scale",
+           "the angle changes " + rounded(own.value / of_stamps) + " times as fast as the recorded velocity says",
            Reason::VELOCITY_SCALE };
 }
 }  // namespace

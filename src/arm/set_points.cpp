@@ -104,7 +104,7 @@ private:
   void read(const std::string& at, ArmMove& move)
   {
     move.target.resize(joints_);
-    fields_(at + "to", "rad", move.target, Range{ -LARGEST, LARGEST }, "angles of all joints");
+    fields_(at + "to", "rad", move.target, Range{ -LARGEST, LARGEST }, "angles of all joints after the move");
     fields_(at + "speed", "rad/s", move.speed, Range{ 1e-3, 100.0 }, "largest speed of the joint that goes farthest");
     fields_(at + "acceleration", "rad/s^2", move.acceleration, Range{ 1e-2, 1e4 },
             "largest acceleration of the joint that goes farthest");
@@ -504,8 +504,9 @@ std::string MotionLimits::errorsAt(const std::vector<JointMotion>& motion, doubl
     if (!links_can || !(motor <= joint.motor_limit))
     {
       return joint.name + " would need " + roundedText(links_can ? motor : std::abs(torques_[i]), 3) +
-             (links_can ? " N.m of its motor" : " N.m") + " before " + roundedText(before, 4) + " s, at " +
-             roundedText(motion[i].acceleration, 3) + " rad/s^2; " + (links_can ? "it has " : "its limit is ") +
+             (links_can ? " N.m of its motor" : " N.m") + " before " + roundedText(before, 4) +
+             " s, at an acceleration of " + roundedText(motion[i].acceleration, 3) + " rad/s^2; " +
+             (links_can ? "its motor's limit is " : "its limit is ") +
              roundedText(links_can ? joint.motor_limit : joint.torque_limit, 4) + " N.m";
     }
   }

@@ -115,7 +115,7 @@ SoundJoint readSoundJoint(const std::vector<std::string>& directories, const Par
       }
       catch (const InputError& error)
       {
-        throw InputError("the reference " + directory + " is of another arm or gear, or was changed: " + error.what());
+        throw InputError("the reference " + directory + " does not fit this arm and gear: " + error.what());
       }
     }
   }

@@ -332,10 +332,10 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
   };
   add(reach.motor_rows == 0,
       "Torsion, stiffness, lost motion, kinematic error and ratcheting. The recording has one angle for each joint, "
-      "but the motor's is needed too.");
+      "but these results need the angle of the motor too.");
   add(evidence.loadOrigin() == LoadOrigin::ARM,
       "Whether the payload is as configured, and whether something presses on the arm all the time. No torque was "
-      "recorded, and both only change the current.");
+      "recorded, and a wrong payload or this pressing only changes the current.");
   add(evidence.loadOrigin() == LoadOrigin::CONFIGURED,
       "Whether the load is as configured, because no load was recorded. The twin uses the configured weight and "
       "inertia. A payload that the configuration lacks only changes the current.");
@@ -350,7 +350,7 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
           whole(verdict[Figure::ROWS]) + " rows do not count. In the strongest contact " +
           contactText(evidence.contact().largest()) + ".");
   add(speeds > 0.0 && !is_both_ways,
-      "Whether friction or a wrong load explains the current, because the joint moves one way only.");
+      "Whether friction or a wrong load explains the current, because the joint moves in one direction only.");
   add(speeds < 3.0, "How friction depends on the speed, because the rows have fewer than three speeds.");
   add(loading < MIN_LOADING * evidence.parameters().output.load_torque_limit,
       "Faults that show under load only, such as softening and cracks, because the load varies by no more than " +
