@@ -48,8 +48,7 @@ ParameterMap armJointParameters(const ArmJoint& joint, const std::filesystem::pa
 ParameterMap armDriveParameters(const ArmJoint& joint, const std::filesystem::path& directory,
                                 const std::string& identified);
 
-/// Parameters of the drive of each joint. solver.scene is `auto` unless the joint's files or `options` set this
-/// parameter.
+/// Parameters of the drive of each joint. Sets solver.scene to `auto` unless the joint's files or `options` set it.
 std::vector<ParameterMap> armDriveMaps(const ArmDescription& arm, const ConfigurationOptions& options,
                                        const std::string& identified);
 

@@ -42,7 +42,7 @@ public:
     dynamics_.setPayload(payload);
   }  ///< sets the payload whose torque the controller feeds forward
 
-  /// Commands the torque of each drive from now on. Call this at each instant with isDue(), with the set point then.
+  /// Commands the torque of each drive from now on, by the present set point. Call this whenever isDue() is true.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
   bool isDue(const ArmTwin& twin) const noexcept;  ///< whether a period of the control begins at the present instant

@@ -63,7 +63,7 @@ public:
 
   /// Computes the symmetric mass matrix of links and payload [kg.m^2]. Row and column i are those of joint i.
   void massMatrix(const std::vector<JointMotion>& motion, Eigen::MatrixXd& mass) noexcept;
-  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< energy of all weights [J]
+  double potentialEnergy(const std::vector<JointMotion>& motion) noexcept;  ///< potential energy in gravity [J]
   ToolPose toolPose(const std::vector<JointMotion>& motion) noexcept;
 
 private:

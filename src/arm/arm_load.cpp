@@ -125,8 +125,7 @@ LinkTorques::LinkTorques(const ArmDescription& arm, PayloadCourse course)
 {
 }
 
-/// Sets the payload that the arm carries at `time`. Before the first entry of course_ this is the payload of that
-/// entry.
+/// Sets the payload that the arm carries at `time` by course_; before the first entry the payload of this entry.
 void LinkTorques::carry(double time) noexcept
 {
   const auto next = std::find_if(course_.begin(), course_.end(), [time](const auto& from) { return from.time > time; });

@@ -140,7 +140,7 @@ public:
   ArmSample* pop(bool at_end = false) noexcept;
 
 private:
-  static constexpr std::size_t ROOM = 256;  // largest number of rows that wait for their fast rates
+  static constexpr std::size_t ROOM = 256;  // largest number of rows that wait for their rates for the vibration
 
   static bool take(std::vector<MotionDifferentiator>& from, bool at_end, std::vector<MotionSample>& samples) noexcept;
   void pushFast() noexcept;
@@ -166,7 +166,7 @@ public:
   /// @throws ParameterError for the reasons that ArmDynamics names.
   explicit LinkTorques(const ArmDescription& arm, PayloadCourse course = {});
 
-  void addTo(ArmSample& sample) noexcept;  ///< adds the torques of `joints` and the vibration of `own` to `sample`
+  void addTo(ArmSample& sample) noexcept;  ///< sets `sample.torques` and the vibrations in `sample.own`
 
   std::size_t joints() const noexcept { return motion_.size(); }
 

@@ -286,8 +286,7 @@ std::vector<ArmSetPoint> fromRest(const ArmSetPoint& point)
   std::vector<ArmSetPoint> points(STEPS + 1, point);
   for (std::size_t k = 0; k < STEPS; ++k)
   {
-    // The speed is a cubic of s, the elapsed share of the path's time. At s = 0 the joints rest, at s = 1 they move as
-    // in `point`.
+    // The speed is a cubic of s, the elapsed share of the path's time: rest at s = 0, the speed of `point` at s = 1.
     const double s = static_cast<double>(k) / static_cast<double>(STEPS);
     points[k].time = point.time - (1.0 - s) * length;
     for (std::size_t i = 0; i < point.joints.size(); ++i)

@@ -87,7 +87,7 @@ using ArmPose = std::vector<double>;  ///< angles of all joints [rad]
 /// A set point and the torques that its motion needs.
 struct ArmInstant : ArmSetPoint
 {
-  std::vector<double> torques;  ///< load at the output of each joint in this motion [N.m]
+  std::vector<double> torques;  ///< load at the output of each joint at the set point [N.m]
 };
 
 /// Moves of a check-up of one joint. The joint moves alone, from ArmJoint::check_up and back to it. Slow strokes over

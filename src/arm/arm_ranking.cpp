@@ -31,8 +31,7 @@ class ArmTrial
 public:
   ArmTrial(const ArmCandidate& candidate, EffortUnit unit) : ArmTrial(candidate, withUnit(candidate.joints, unit)) {}
 
-  /// Adds a sample without torques, whose `current` fields hold efforts. `counts`: whether the load's fit uses the
-  /// sample.
+  /// Adds a sample without torques, with efforts in `current`. `counts`: whether the fit of the load uses the sample.
   void add(const ArmSample& sample, bool counts)
   {
     sample_ = sample;

@@ -34,7 +34,7 @@ std::vector<double> leastInertia(ArmDynamics& dynamics, const std::vector<double
   {
     for (JointMotion& joint : pose)
     {
-      // No distribution of the standard library, because its numbers depend on the compiler.
+      // The program uses no distribution of the standard library, because its numbers depend on the compiler.
       joint.position = TWO_PI * static_cast<double>(generator()) / static_cast<double>(std::mt19937::max());
     }
     dynamics.massMatrix(pose, mass);

@@ -97,11 +97,12 @@ public:
   ArmWatch(const ArmWatch&) = delete;
   ArmWatch& operator=(const ArmWatch&) = delete;
 
-  /// Adds one row of each joint, all of the same time. Their field `current` holds the effort as received.
+  /// Adds one row of each joint, all of the same time, with the effort as received in the field `current`.
   void add(const std::vector<MotionRow>& rows);
   void reset();  ///< forgets all rows and the results of their rankings, because rows of another motion follow
 
-  /// Takes the result of a ranking that has ended; false: none has ended. @throws any exception of MakeCandidates.
+  /// Takes the result of a finished ranking. Returns false if none has finished. @throws any exception of
+  /// MakeCandidates.
   bool look();
 
   /// Name of the arm that is clearly likelier than the given one; empty: no such arm is known.
@@ -123,7 +124,7 @@ private:
   std::vector<double> moved_from_;  // angle of each joint at its last change that counted as motion [rad]
   double last_moved_{ -HUGE_VAL };  // time of the last row with motion [s]
   double last_time_{ -HUGE_VAL };   // time of the last row that was kept [s]
-  double moved_{};                  // time of motion since the class last began [s]
+  double moved_{};                  // time of motion since the first of the present rows [s]
   double next_look_{ LoadFit::FIRST_LOOK };
   std::atomic<bool> is_stopped_{ false };  // true: the rows of the running ranking are from before the last reset
   std::future<std::string> answer_;        // last member: its destructor waits for the thread, which uses other members

@@ -250,8 +250,7 @@ bool LoadLaw::take(const FoundLoad& found, const JudgedJoints& joints)
 std::optional<AssumedLoad> LoadLaw::other(const FoundLoad& found, const JudgedJoints& joints) const
 {
   const bool is_mounted = found.mounting.differs();
-  // A mass below zero is no payload. If the present load has a found payload, a smaller mass means that somebody put it
-  // down.
+  // A mass below zero is no payload. A smaller mass than that of a payload found before means that it was put down.
   const bool is_put_down = counts_.payload && counts_.payload->isCarried();
   const bool changes = !found.changes.empty() || !std::isinf(found.since);
   const bool is_carried = changes || (found.payload.differs() && (found.payload.isOther() || is_put_down));

@@ -109,7 +109,7 @@ struct AssumedLoad
 struct JudgedJoints
 {
   JudgedJoints() = default;
-  /// `fit`: fit of the rows. `misfits`, `frictions`: those of each joint. `tolerance`: as in commonFriction().
+  /// `fit`: fit of the rows. `misfits`, `frictions`: one for each joint. `tolerance`: as in commonFriction().
   JudgedJoints(const RecordingFit& fit, std::vector<Misfit> misfits, std::vector<MeasuredFriction> frictions,
                double tolerance);
 
@@ -124,8 +124,8 @@ void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// Rules by which another load replaces the configured one, for recordings and live telemetry alike. The class tries a
 /// load that the currents show: a mounting, a drag, or a payload. A payload is tried only if a wrong load can cause all
-/// misfits of the joints. The new load stays if no joint with a measured current has a misfit under it. Otherwise the
-/// load before returns.
+/// misfits of the joints. The new load stays if no joint with a measured current has a misfit with this load. Otherwise
+/// the previous load returns.
 class LoadLaw
 {
 public:

@@ -257,7 +257,7 @@ ArmEstimator::Rows LoadFit::rowsOf(const std::vector<bool>& counts, std::size_t 
   return rows;
 }
 
-/// Mass at the tip that loads the joint which the tip loads most as much as 2 % of the arm's masses do [kg].
+/// Mass at the tip that adds 2 % to the load of one joint, rms: of the joint that a mass at the tip loads most [kg].
 double LoadFit::ofLinks(const std::vector<bool>& counts) const
 {
   constexpr double LINKS_SHARE = 0.02;
@@ -336,8 +336,7 @@ std::vector<LoadFit::Hypothesis> LoadFit::hypotheses(const std::vector<bool>& co
   return pushed_.empty() ? all : likeliest(counts);
 }
 
-/// Hypotheses that may explain the currents: first the likeliest one, then all whose cost is at most OTHER_CAUSE
-/// larger.
+/// Hypotheses that may explain the currents: first the likeliest, then those whose cost is at most OTHER_CAUSE larger.
 std::vector<LoadFit::Hypothesis> LoadFit::likeliest(const std::vector<bool>& counts) const
 {
   constexpr double LEAST_JUMP = 0.1;       // least change of the mass; rising friction looks like less [kg]
@@ -372,8 +371,8 @@ ArmEstimator::Estimate LoadFit::estimate(const std::vector<bool>& counts)
 
 /// Friction of each joint. The likeliest hypothesis gives the friction factor: that of the joint alone, or that with
 /// the common factors, whichever is nearer to 1. The interval spans the intervals of all hypotheses. If the likeliest
-/// hypothesis has another mounting than the configured one, it is unknown, because the twins' friction is for a wrong
-/// load.
+/// hypothesis has another mounting than the configured one, the friction is unknown, because the twins' friction is
+/// that under a wrong load.
 std::vector<FittedFriction> LoadFit::frictionsOf(const std::vector<Hypothesis>& all)
 {
   std::vector<FittedFriction> frictions(all.front().found.own.size());

@@ -125,7 +125,7 @@ private:
   std::vector<Joint> joints_;
   ArmEstimator::Rows rows_;
   std::vector<double> legs_;  // time at which each leg begins [s]
-  std::vector<bool> pushed_;  // true: something pushes the arm in this leg, so it does not count; empty: none
+  std::vector<bool> pushed_;  // true: something pushes the arm in this leg, so the leg does not count; empty: no push
   double still_{};            // time for which all joints have stood still [s]
   double moved_{};            // time in which at least one joint moved [s]
   double last_time_{};

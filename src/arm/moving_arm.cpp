@@ -31,7 +31,7 @@ std::vector<JointGains> gainsOf(const ArmDescription& arm, const std::vector<Par
   return gains;
 }
 
-/// The drives' parameters, with `settling` [s] added to onsets of faults, so that these count from the motion's begin.
+/// The drives' parameters. Adds `settling` [s] to onsets of faults, so that onsets count from the start of the motion.
 std::vector<Parameters> withFaultsInMotion(std::vector<Parameters> drives, double settling)
 {
   constexpr double LATEST_ONSET = 1e9;  // largest onset that a drive accepts [s]

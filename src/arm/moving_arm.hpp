@@ -67,7 +67,7 @@ public:
 
   /// Adds a set point to a motion that receives its set points one by one. The motion given at construction must have
   /// two set points, the start first. `time` [s] is on the time axis of that motion and never decreases from call to
-  /// call. A set point at the time of the last one replaces it.
+  /// call. A set point at the time of the last one replaces the last one.
   void goOn(double time, const std::vector<JointMotion>& set_point) noexcept { motion_.goOn(time, set_point); }
 
   /// Sets the payload at the tip, from the next step on. The controller feeds forward the torque of this payload.
@@ -84,7 +84,7 @@ public:
   const std::optional<ProtectiveStop>& protectiveStop() const noexcept { return stop_; }
 
   JointReading reading(std::size_t joint) const noexcept;
-  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< begin of the first motion [ns]
+  Stamp motionBegin() const noexcept { return motion_begin_; }  ///< stamp of the motion's start [ns]
   ArmTwin& twin() noexcept { return twin_; }
   const ArmTwin& twin() const noexcept { return twin_; }
   const ArmController& controller() const noexcept { return controller_; }

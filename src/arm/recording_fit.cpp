@@ -20,7 +20,7 @@ namespace hjt
 namespace
 {
 constexpr double FASTEST = 10.0;      // speed that no joint of an arm exceeds [rad/s]
-constexpr double FACTOR_OFF = 0.03;   // least deviation of a factor that counts; scales of encoders deviate by less [-]
+constexpr double FACTOR_OFF = 0.03;   // least deviation of a factor that counts; scales of encoders deviate less [-]
 constexpr double DEVIATIONS = 3.0;    // least significant difference, in standard deviations [-]
 constexpr double WIDE = 2.0;          // largest factor on the currents that a wrong payload or gain causes [-]
 constexpr double WIDEST_FACTOR = 20;  // largest factor from stamps in seconds; a larger one shows another unit [-]
@@ -294,8 +294,7 @@ EffortFit RecordingFit::effort() const
   std::vector<double> expected(units.size());
   for (const Joint& joint : joints_)
   {
-    // The weight of a joint is its load, not the certainty of its slope, which is best for a current that never
-    // changes.
+    // The weight of a joint is its load. The certainty of its slope would be largest for a current that never changes.
     double weight = 0.0;
     const FittedFactor slope = joint.lag.now().slope(weight);
     if (!std::isfinite(slope.value) || joint.reach.least_current == joint.reach.most_current)

@@ -59,8 +59,8 @@ struct EffortFit
 
 /// Checks whether the rows of an arm fit together: angles with velocities and stamps, and currents with the load.
 ///
-/// The rows are live or from a recording. Findings are on the last minutes of motion. update() never throws or
-/// allocates.
+/// The rows are live or from a recording. The findings are about the last minutes of motion. update() neither throws
+/// nor allocates.
 class RecordingFit
 {
 public:

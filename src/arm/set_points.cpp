@@ -224,7 +224,7 @@ std::string rangeErrors(const JointMotion& motion, const ArmJoint& joint)
                               errors("acceleration", motion.acceleration, "rad/s^2", Range{ -1e4, 1e4 });
 }
 
-/// Says which joint would turn at over three times its speed limit. A controller's set points can exceed it slightly.
+/// Says which joint would turn faster than TIMES its speed limit. A controller can exceed the limit itself slightly.
 std::string speedErrors(const std::vector<ArmSetPoint>& points, const ArmDescription& arm)
 {
   constexpr double TIMES = 3.0;  // largest allowed speed over the joint's speed limit [-]
@@ -312,7 +312,7 @@ void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acc
 
 double straightenTimes(std::vector<ArmSetPoint>& points)
 {
-  constexpr double MOVING = 0.05;      // least root of the summed squares of the joints' speeds [rad/s]
+  constexpr double MOVING = 0.05;      // least root of the sum of squared joint speeds in motion [rad/s]
   constexpr double SAME_RATES = 0.02;  // largest share by which speeds and rates of the angles may differ [-]
   constexpr double JITTER = 0.1;       // least jitter of the stamps that counts, rms, over the time between rows [-]
   constexpr double LONGEST = 4.0;      // largest ratio of the time by the speeds to the time by the stamps [-]

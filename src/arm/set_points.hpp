@@ -42,9 +42,8 @@ void requireMotion(const std::vector<ArmSetPoint>& points, const ArmDescription&
 /// @throws InputError if the size or the sign of a joint's speeds is not that of the angles' rates.
 void requireRates(const std::vector<ArmSetPoint>& points, const ArmDescription& arm, const std::string& what);
 
-/// Checks the torques that the accelerations of a motion need. Links and payload may need at most
-/// ArmJoint::torque_limit. With the motor's inertia they may need at most the motor's torque limit. The class neglects
-/// friction.
+/// Checks the torques of a motion, without friction. Links and payload may need at most ArmJoint::torque_limit. With
+/// the motor's inertia they may need at most the motor's torque limit.
 class MotionLimits
 {
 public:
@@ -53,8 +52,7 @@ public:
 
   void setPayload(const Payload& payload) noexcept { dynamics_.setPayload(payload); }
 
-  /// Says which joint first exceeds a limit, and when, if angles follow cubics between the set points; empty: none
-  /// does.
+  /// Says which joint first exceeds a limit, and when, if angles follow cubics between set points; empty: no joint.
   std::string errors(const std::vector<ArmSetPoint>& points);
 
 private:
