@@ -62,17 +62,20 @@ struct ArmFriction
 
 /// Finds the common factors of the friction of an arm's joints. The factor of the whole arm is the median of the
 /// joints' friction ratios, if most of at least three joints agree on the median within `tolerance`, and if the median
-/// differs from 1 by more than `tolerance`. So one faulty joint changes neither the factor nor the temperature. A group
-/// has a further factor if most of its three joints agree on the ratio that remains after division by the factor of the
-/// arm, because three drives do not fail alike. If a joint of the group is compared with its type, 5 % of the group's
-/// factor may be chance. These 5 % are then the deviation of the factor for the joints that are compared with
-/// themselves. If a group has more friction than expected, the group's factor never makes the friction of a joint look
-/// too low. If a group has less friction than expected, the factor can make that of a joint look too high; the scatter
-/// of the group's other joints beyond the scatter of sound joints adds to the deviation. No joint is judged in three
-/// cases. If two or more joints have less friction than any fault leaves, something outside carries the arm. If the
-/// currents of two or more joints fit no load, or those of one joint while a second joint has less friction than any
-/// fault leaves, the arm's load is not the configured one. If one joint has less friction than any fault leaves and a
-/// second joint has more than twice the expected friction, the joints are not in the configured order.
+/// differs from 1 by more than `tolerance`. So one faulty joint changes neither the factor nor the temperature.
+///
+/// A group has a further factor if most of its three joints agree on the ratio that remains after division by the
+/// factor of the arm, because three drives do not fail alike. If a joint of the group is compared with its type, 5 % of
+/// the group's factor may be chance. These 5 % are then the deviation of the factor for the joints that are compared
+/// with themselves. If a group has more friction than expected, the group's factor never makes the friction of a joint
+/// look too low. If a group has less friction than expected, the factor can make that of a joint look too high; the
+/// scatter of the group's other joints beyond the scatter of sound joints adds to the deviation.
+///
+/// No joint is judged in three cases. If two or more joints have less friction than any fault leaves, something outside
+/// carries the arm. If the currents of two or more joints fit no load, or those of one joint while a second joint has
+/// less friction than any fault leaves, the arm's load is not the configured one. If one joint has less friction than
+/// any fault leaves and a second joint has more than twice the expected friction, the joints are not in the configured
+/// order.
 ArmFriction commonFriction(const std::vector<MeasuredFriction>& joints, double tolerance);
 
 /// Why a joint is not judged. `joint`: misfit of the joint itself, `arm`: misfit of all joints, which counts if `joint`

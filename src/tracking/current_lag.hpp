@@ -48,8 +48,8 @@ private:
 };
 
 /// One LoadRegression for each of several lags of the current behind the motion. At most one row in 20 ms counts.
-/// Motion between rows is interpolated. Only motion faster than MotionDifferentiator::SLIDING counts. Nothing
-/// allocates.
+/// Between rows the class interpolates the motion. Only motion faster than MotionDifferentiator::SLIDING counts.
+/// Nothing allocates.
 class CurrentLag
 {
 public:

@@ -27,8 +27,7 @@ public:
     ++end_;
   }
 
-  /// The last value from `time` [s] or earlier that is at most `max_age` [s] old at `time`; none: there is no such
-  /// value.
+  /// The last value from `time` [s] or earlier that is at most `max_age` [s] old at `time`; none: no such value.
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
     for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)
@@ -46,9 +45,8 @@ public:
 
   void mark() noexcept { marked_ = end_; }  ///< marks all values so far as values for rows that have arrived
 
-  /// Call this function when the time of the rows jumps back. Forgets the values up to the mark, and the values after
-  /// the mark up to the first one whose time is before `earliest` [s]. This value and later ones belong to rows to
-  /// come.
+  /// Call this function when the time of the rows jumps back. Forgets the values up to the mark, and those after it up
+  /// to the first value before `earliest` [s]. This value and later ones belong to rows to come.
   void jumpBack(double earliest) noexcept
   {
     begin_ = std::max({ begin_, marked_, end_ > ROOM ? end_ - ROOM : 0 });
@@ -83,8 +81,8 @@ public:
 
   static bool isPossible(double temperature) noexcept { return temperature >= LOWEST && temperature <= HIGHEST; }
 
-  /// Keeps a temperature [degC] measured at `time` [s]. Refuses infinities, NaN, and temperatures beyond LOWEST and
-  /// HIGHEST.
+  /// Keeps a temperature [degC] measured at `time` [s]. Refuses impossible temperatures and numbers that are not
+  /// finite.
   void push(double time, double temperature) noexcept
   {
     if (std::isfinite(time) && isPossible(temperature))

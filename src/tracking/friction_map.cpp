@@ -38,8 +38,7 @@ double largestLoad(const Parameters& parameters)
   return largest;
 }
 
-/// Losses of a drive without errors of manufacture. The function keeps tables, because joints of an arm can have equal
-/// drives.
+/// Losses of a drive without errors of manufacture. Keeps the tables, because joints of an arm can have equal drives.
 const std::vector<LossRow>& lossesOf(Parameters parameters, const std::vector<double>& loads)
 {
   parameters.joint = {};

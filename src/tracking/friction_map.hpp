@@ -14,7 +14,7 @@ namespace hjt
 struct FrictionShares
 {
   double preload{};   ///< friction of the balls under the preload of the race; proportional to bearing.race_preload
-  double grease{};    ///< friction of the bearing by speed; above 2000 mm^2/s rpm as bearing.viscosity to the power 2/3
+  double grease{};    ///< bearing friction by speed; ~ bearing.viscosity^(2/3) for viscosity x speed > 2000 mm^2/s rpm
   double flanks{};    ///< friction of tooth flanks; proportional to mesh.friction_static and _kinetic together
   double rest{};      ///< friction of loaded bearing, outer race, rim and cup, Coulomb friction of motor and output
   double stribeck{};  ///< rise of the friction towards standstill; proportional to motor.stribeck_torque
@@ -26,8 +26,7 @@ struct FrictionShares
 /// Table of the twin's friction over speed and load. The full ring makes the table once, so that the twin can follow a
 /// motion of hours in seconds.
 ///
-/// The table has no errors of manufacture. Such errors change the ripple of the friction, not its mean over a tooth
-/// pitch.
+/// The table has no errors of manufacture, which change the ripple of the friction, not its mean over a tooth pitch.
 class FrictionMap
 {
 public:

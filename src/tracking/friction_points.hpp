@@ -161,12 +161,12 @@ public:
   const FrictionBlocks& blocks() const { return blocks_; }
 
   /// Measured friction over the twin's friction, from the rows of all points. Both directions have equal weight, so
-  /// that a wrong load has no effect. The deviation is the larger of those by FrictionBlocks and by a jackknife over
-  /// points.
+  /// that a wrong load has no effect. The deviation is the larger of two: by FrictionBlocks, and by a jackknife over
+  /// the points.
   FrictionRatio ratio() const { return ratio(points()); }
 
-  /// Measured friction over that of `reference`, at common speeds, because joint and twin may differ in the rise with
-  /// speed.
+  /// Measured friction over that of `reference`, at the speeds that both have, because the friction of joint and twin
+  /// may rise differently with the speed.
   FrictionRatio ratioTo(const std::vector<FrictionPoint>& reference) const
   {
     return ratio(common(points(), reference));

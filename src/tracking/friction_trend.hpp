@@ -39,7 +39,7 @@ struct FrictionTrend
 
   bool isKnown() const { return std::isfinite(slope); }
 
-  // Functions with Low and High: ends of the 95 % intervals of slope and change.
+  // Functions whose names end with Low and High give the ends of the 95 % intervals of slope and change.
   double slopeLow() const { return slope - halfWidth(); }
   double slopeHigh() const { return slope + halfWidth(); }
   double change() const { return std::exp(slope * span); }  ///< friction at the end over friction at the beginning [-]

@@ -70,8 +70,7 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
 
 using Gap = std::pair<Reason, std::string>;  // a reason for a missing verdict, and this reason as a sentence
 
-/// Says why the points give no friction factor; SOUND: they give one. `is_to_own`: whether the reference is
-/// OwnReference.
+/// Says why the points give no friction factor; SOUND: they do. `is_to_own`: whether the reference is the joint's own.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +
@@ -167,8 +166,8 @@ double repeatDeviation(double stated, const OwnReference& own)
 
 /// Relative standard deviation, by the scatter of the rows, of the ratio of friction to the joint's own earlier
 /// friction [-]: the larger of that by the jackknife over the speeds and that by the blocks of both recordings. Only
-/// half of the blocks' variance counts. The other half comes from friction of the twin that rises with the speed
-/// differently from the joint's friction, which is alike in both recordings.
+/// half of the blocks' variance counts. The other half comes from the twin, whose friction rises differently with the
+/// speed than the joint's; this half is the same in both recordings.
 double scatterToOwn(const FrictionRatio& ratio, const FrictionBlocks& blocks, const OwnReference& own)
 {
   const double of_blocks = std::sqrt(0.5) * std::hypot(blocks.deviation(), own.friction_deviation);

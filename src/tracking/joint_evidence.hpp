@@ -70,7 +70,7 @@ public:
 
   std::uint64_t rows() const { return static_cast<std::uint64_t>(regression_.rows()); }
 
-  /// Mean torsions in the order of the torques. They are shifted so as to be 0 where the twin's torsion is 0.
+  /// Mean torsions in the order of the torques. An offset makes them 0 where the twin's torsion is 0.
   std::vector<TorsionMean> means() const
   {
     std::vector<TorsionMean> means;
@@ -372,8 +372,7 @@ public:
   /// @throws ParameterError if the ring finds no equilibrium under load.
   JointEvidence(const Parameters& parameters, LoadOrigin load);
 
-  /// Sets the reference of the signals, from the joint when it was sound. Without this call the first windows are the
-  /// reference.
+  /// Sets the reference of the signals of the sound joint. Without this call the first windows are the reference.
   void setReference(std::vector<ReferenceBin> bins);
 
   /// Result of update() for a row.
@@ -385,8 +384,7 @@ public:
     WINDOW  ///< the row counts and completed a window of the signals
   };
 
-  /// Takes a sample whose load includes weight and inertia. `fits`: whether the sample counts for windows of the
-  /// signals.
+  /// Takes a sample whose load includes weight and inertia. `fits`: whether the signals of the sample count.
   Row update(const MotionSample& sample, bool fits = true) noexcept
   {
     predict(sample);
@@ -407,8 +405,8 @@ public:
   const MotionPrediction& predicted() const { return predicted_; }  ///< prediction for the last row
   const MotionReach& reach() const { return now_.reach; }
   const FrictionPoints& friction() const { return now_.friction; }
-  /// As friction(), but with FrictionPoint::twin by the controller's target current. Rows without this current do not
-  /// count.
+  /// As friction(), but FrictionPoint::twin is the friction in the controller's target current. Rows without this
+  /// current do not count.
   const FrictionPoints& besideController() const { return now_.beside_controller; }
   const TorsionPoints& torsion() const { return torsion_; }
   const SignalIndicators& indicators() const { return health_.indicators(); }
@@ -425,7 +423,7 @@ public:
   /// Root mean square of the residual [A] after subtraction of the constant and of the multiple of the predicted
   /// friction that fit best. So a constant load, wear and cold grease do not count.
   double unexplainedRms() const;
-  /// Measured over predicted current for load and inertia, without friction [-]; NaN: the predicted one is too small.
+  /// Measured over predicted current for load and inertia, without friction [-]; NaN: the prediction is too small.
   FittedFactor loadFactor() const;
   double temperature() const;  ///< mean temperature of the rows [degC]
   /// Whether more than half of the rows had a received temperature.

@@ -84,12 +84,10 @@ public:
     return sum;
   }
 
-  /// Orders of the lines per turn of the joint: two waves against circular spline and flexspline, then four against
-  /// each.
+  /// Orders of the lines per turn of the joint: two waves against circular spline and flexspline, then four waves.
   static Orders orders(double ratio) { return { 2.0 * ratio - 2.0, 2.0 * ratio, 4.0 * ratio - 4.0, 4.0 * ratio }; }
 
-  /// The term w0^2 - w^2 + 2 i z w0 w of the class comment [rad^2/s^2]. `response`: resonance [Hz], damping [-], lag
-  /// [s].
+  /// w0^2 - w^2 + 2 i z w0 w of the class comment [rad^2/s^2]. `response`: resonance [Hz], damping [-], lag [s].
   static std::complex<double> stiffness(double w, const double* response) noexcept
   {
     const double natural = TWO_PI * response[0];
@@ -301,8 +299,7 @@ private:
   bool started_{};
 };
 
-/// The whole twin, driven by a measured motor current, predicts the motion. Its differences from the robot grow with
-/// time.
+/// The whole twin, driven by a measured motor current, predicts the motion. The prediction drifts away with time.
 ///
 /// The current of a sample drives the twin from the sample's time on. The weight is that at the measured angle, so that
 /// the weight stays right if the twin's angle drifts away. At the first sample, and at the first one after a gap, the
@@ -328,8 +325,8 @@ public:
     double friction_torque{};  ///< friction of the whole drive at the joint, > 0 against the motion [N.m]
   };
 
-  /// Returns the state of the twin's joint at the time of `sample`. From this time on the current of `sample`, and
-  /// `load`, act. @param load external torque at the output, without the configured weight and inertia [N.m]
+  /// Returns the state of the twin's joint at the time of `sample`, from which on its current and `load` act.
+  /// @param load external torque at the output, without the configured weight and inertia [N.m]
   Motion step(const MotionSample& sample, double load) noexcept
   {
     const Stamp stamp = std::llround(1e9 * sample.time);

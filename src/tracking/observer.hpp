@@ -63,7 +63,7 @@ struct Observation
 {
   double motor_angle{};      ///< motor angle; output angle and load at the start define its zero [rad]
   double motor_velocity{};   ///< speed of the motor [rad/s]
-  double output_angle{};     ///< [rad]
+  double output_angle{};     ///< angle of the output [rad]
   double output_velocity{};  ///< speed of the output [rad/s]
   double joint_torque{};     ///< torque in the gear, at the output [N.m]
   double friction_torque{};  ///< friction of a sound joint at the motor, with the sign of the motion [N.m]

@@ -15,9 +15,8 @@
 
 namespace hjt
 {
-/// Checks whether motor and joint turn by the configured ratio. The found ratio is the slope of the motor angle over
-/// the joint angle, by least squares from changes between rows, so that a constant torsion has no effect. Only text()
-/// allocates.
+/// Checks whether motor and joint turn by the configured ratio. The found ratio is the slope of motor angle over joint
+/// angle, by least squares from changes between rows, so that a constant torsion has no effect. Only text() allocates.
 class RatioFit
 {
 public:

@@ -187,10 +187,12 @@ inline double greatestSpeed(const Parameters& parameters) noexcept
 /// within MotionDifferentiator::MAX_GAP, can be reached from the row before, the filter drops the rows that it held
 /// back. Otherwise the angles really jumped, or stamps or unit of the angles are wrong. The filter then passes all held
 /// rows, because later checks report these errors. The first row also waits for the second one, because no row before
-/// it can confirm it. The filter drops a row that repeats the angles, currents and velocities of all joints while the
-/// joints move, because it was not measured: a recorder was stuck, or a driver publishes more often than its robot
-/// measures. The filter drops a row that follows within a quarter of the mean time between rows, because such a row was
-/// stamped when a buffer was emptied. After construction nothing throws or allocates.
+/// it can confirm it.
+///
+/// The filter drops a row that repeats the angles, currents and velocities of all joints while the joints move, because
+/// it was not measured: a recorder was stuck, or a driver publishes more often than its robot measures. The filter
+/// drops a row that follows within a quarter of the mean time between rows, because such a row was stamped when a
+/// buffer was emptied. After construction nothing throws or allocates.
 class RowFilter
 {
 public:

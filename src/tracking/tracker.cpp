@@ -176,8 +176,8 @@ Comparison Tracker::comparisonOf(MotionSample& sample) noexcept
   now.temperature_received = is_temperature_received;
   now.housing_temperature = grease_.housing(prediction_temperature);
   now.after_gap = sample.after_gap;
-  // The evidence uses the received temperature near the motor, as `compare` does. The comparison uses that of the
-  // grease.
+  // The evidence uses the received temperature near the motor, as `compare` does. The comparison uses the temperature
+  // of the grease.
   evidence_.predict(sample);
   sample.temperature = prediction_temperature;
   if (torque_driven_)

@@ -204,7 +204,7 @@ public:
   /// telemetry.load says. Ignores a number that is not finite.
   void pushLoad(double time, double torque) noexcept;
 
-  /// Sets the drive's temperature [degC] from `time` [s] on, for rows without one. Refuses and counts impossible ones.
+  /// Sets the drive's temperature [degC] from `time` [s] on for rows without it. Counts and ignores impossible values.
   void pushTemperature(double time, double temperature) noexcept { temperatures_.push(time, temperature); }
 
   /// Sets the estimated temperature for rows without a received temperature [degC]; none: the configured temperature.
@@ -212,7 +212,7 @@ public:
 
   bool hasEstimate() const noexcept { return estimated_temperature_.has_value(); }
 
-  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. It allocates.
+  /// Sets the reference of the joint's signals. Without this call the first windows are the reference. Allocates.
   void setReference(std::vector<ReferenceBin> bins) { evidence_.setReference(std::move(bins)); }
 
   /// Takes a row of telemetry and ignores MotionRow::load. Call pop() afterwards.
@@ -241,8 +241,7 @@ public:
   /// Clears the evidence, so that only later rows count for the next verdict.
   void forgetEvidence() noexcept { evidence_.forget(); }
 
-  /// Lag of the measured current (mode `motion`) or speed (mode `torque`) behind the predicted one [s]; none: not
-  /// known.
+  /// Lag of the measured behind the predicted current (mode `motion`) or speed (mode `torque`) [s]; none: not known.
   std::optional<double> lag() const noexcept { return lag_.lag(); }
 
   /// Indicators of the measured joint, from its own signals.

@@ -82,7 +82,7 @@ Finding judgeTorsion(const JointEvidence& evidence, const OwnReference& own, Ver
     return finding;
   }
   // An eccentric encoder at the output has the effect of a torsion once per turn, as weight has. The error of the
-  // motor's encoder averages over many turns.
+  // motor's encoder counts with its rms, because the motor makes many turns.
   const double twin = evidence.torsion().twinAmplitude();
   const double turn = evidence.torsion().turnAmplitude();
   const double eccentricity = (parameters.sensors.output_eccentricity * turn +
@@ -286,8 +286,7 @@ Verdict judge(const JointEvidence& evidence, const JointContext& context)
   }
   else if (verdict.findings.front().level != VerdictLevel::NOT_JUDGED)
   {
-    // A reference from the same joint may have the same wrong gain, so only a change of the friction shows a wrong
-    // gain.
+    // A reference of the same joint may have the same wrong gain. Then only a change of the friction shows the gain.
     const bool departs = severityOf(verdict.findings.front().level) != HealthLevel::OK;
     const bool is_to_own = context.is_identified || !context.own.friction.empty();
     const GainEvidence gain(evidence);

@@ -58,7 +58,7 @@ private:
 struct OwnReference
 {
   std::vector<FrictionPoint> friction;  ///< measured friction at each speed; empty: not known
-  double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< NaN: not known
+  double compliance_ratio{ std::numeric_limits<double>::quiet_NaN() };  ///< torsion over the twin's; NaN: not known [-]
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };                              ///< temperature of the recordings; NaN: not known [degC]
@@ -171,7 +171,7 @@ struct Finding
 /// Friction of a joint over the friction of its reference, in an arm divided by the common factor of the joints.
 struct JudgedFriction
 {
-  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< the quotient; NaN: not measured [-]
+  double factor{ std::numeric_limits<double>::quiet_NaN() };  ///< friction factor; NaN: not measured [-]
   double lower{ std::numeric_limits<double>::quiet_NaN() };   ///< lower end of the interval of `factor` [-]
   double upper{ std::numeric_limits<double>::quiet_NaN() };   ///< upper end of the interval of `factor` [-]
   bool has_interval{};
@@ -230,8 +230,7 @@ std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 
 std::string sentence(std::string clause);  ///< makes a sentence of a clause
 
-/// WARN if |deviation| exceeds `tolerance`, ERROR if |deviation| exceeds `tolerance` times `error_factor`, otherwise
-/// OK.
+/// ERROR if |deviation| > `tolerance` x `error_factor`, otherwise WARN if |deviation| > `tolerance`, otherwise OK.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);
 
 Verdict judge(const JointEvidence& evidence, const JointContext& context);
@@ -249,8 +248,8 @@ MeasuredFriction measuredFriction(const JointEvidence& evidence, const JointCont
 std::string factorText(const FrictionFactor& factor);
 std::string factorText(const JudgedFriction& friction);
 
-/// Whether the friction that the arm's controller expects can be the reference. It can if it agrees with the measured
-/// friction of at least three joints and of most joints, because then it is that of sound joints.
+/// Whether the friction that the arm's controller expects can be the reference. The condition is that it agrees with
+/// the measured friction of three joints or more and of most joints, and so belongs to sound joints.
 bool controllerIsReference(const std::vector<const JointEvidence*>& joints);
 
 /// Relative standard deviation of the change of a sound joint's friction from recording to recording, apart from the

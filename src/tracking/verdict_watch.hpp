@@ -128,7 +128,7 @@ private:
   bool settled_{ true };
   double last_row_{};  // time of the last row that was judged [s]
   Verdict confirmed_;
-  double confirmed_at_{};  // time of the last row of the last verdict that replaced the present one [s]
+  double confirmed_at_{};  // time of the last row when confirmed_ was last set [s]
 };
 
 /// commonFriction() for the joints of these verdicts.
