@@ -44,8 +44,8 @@ inline constexpr Range PAYLOAD_CENTRE{ -10.0, 10.0 };  ///< allowed coordinates 
 /// Mass at the tip of an arm.
 struct Payload
 {
-  double mass{};                   ///< mass [kg]
-  std::array<double, 3> centre{};  ///< centre of mass in the frame of the tip [m]
+  double mass{};                   ///< mass of the payload [kg]
+  std::array<double, 3> centre{};  ///< centre of mass of the payload in the frame of the tip [m]
 };
 
 /// Says which value of the payload is out of range. The text is empty if all values are in range.

@@ -15,9 +15,9 @@ namespace hjt
 /// Angle, speed and acceleration of one joint of an arm.
 struct JointMotion
 {
-  double position{};      ///< angle [rad]
-  double velocity{};      ///< speed [rad/s]
-  double acceleration{};  ///< acceleration [rad/s^2]
+  double position{};      ///< angle of the joint [rad]
+  double velocity{};      ///< speed of the joint [rad/s]
+  double acceleration{};  ///< acceleration of the joint [rad/s^2]
 };
 
 /// Force [N] and moment [N.m] on the tip, in the frame of the base.

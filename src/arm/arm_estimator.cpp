@@ -107,7 +107,7 @@ double looseness(int start, int term)
 }
 }  // namespace
 
-/// Widths of the priors of all terms.
+/// Width and kind of the prior of each term.
 struct ArmEstimator::Prior
 {
   Eigen::VectorXd width;
@@ -128,7 +128,7 @@ struct ArmEstimator::Point
 /// Errors of the rows of one joint, with the derivatives of the explained currents by the terms.
 struct ArmEstimator::Work
 {
-  Eigen::VectorXd error;  // [A]
+  Eigen::VectorXd error;  // error of each row [A]
   std::vector<Slope> slopes;
 };
 
@@ -408,7 +408,7 @@ ArmEstimator::Estimate ArmEstimator::estimateOf(const Point& point, const std::v
       all += row.current * row.current;
     }
     found.gains.push_back(known(Eigen::VectorXd::Unit(size_, own + OWN_GAIN)));
-    // The terms for cold and loss count with the part that is proportional to the friction.
+    // Of the currents by the terms for cold and loss, the part that is proportional to the friction counts as friction.
     Eigen::VectorXd terms = Eigen::VectorXd::Zero(size_);
     terms[groupOf(i)] = terms[own + OWN_FRICTION] = 1.0;
     terms[own + OWN_COLD] = cold / power;

@@ -133,7 +133,7 @@ std::string sectionOf(const std::string& key)
   return key.substr(0, key.find('.'));
 }
 
-/// The value of `key`, which must be a text.
+/// Name of a file that the map holds under `key`. The value must be a text.
 std::string fileName(const ParameterMap& map, const char* key)
 {
   const ParameterValue& value = map.at(key);

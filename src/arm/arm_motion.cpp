@@ -15,9 +15,9 @@ namespace hjt
 {
 namespace
 {
-constexpr double ACCELERATION = 300.0 * DEGREE;  // moderate acceleration: a stretched UR5 needs 17 N.m for it [rad/s^2]
+constexpr double ACCELERATION = 300.0 * DEGREE;  // acceleration in a stroke: 17 N.m for a stretched UR5 [rad/s^2]
 constexpr double REST = 0.5;                     // time at rest before and after the moves [s]
-constexpr std::size_t MAX_INSTANTS = 450'000;    // number of instants in an hour at 125 Hz
+constexpr std::size_t MAX_INSTANTS = 450'000;    // largest number of instants, those of an hour at 125 Hz
 constexpr double LIMIT_SHARE = 5.0 / 6.0;        // largest share of the joint's speed limit in a stroke [-]
 
 /// A stroke moves the joint to an angle, relative to the pose in which its check-up begins.
@@ -139,7 +139,7 @@ void requireWithin(const ArmDescription& arm, const ArmInstant& instant)
     refuse("torque", instant.torques[i], joint.torque_limit, "[N.m]");
   }
 }
-/// Samples moves one after the other.
+/// Samples a list of moves, one move after the other.
 class Sampler
 {
 public:
@@ -323,8 +323,8 @@ std::vector<ArmSetPoint> toRest(const ArmSetPoint& point)
 
 ArmMotion gentleMotion(const ArmDescription& arm)
 {
-  constexpr double ACCELERATION = 2.0;                           // [rad/s^2]
-  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };                // speed of the joint that moves farthest [rad/s]
+  constexpr double ACCELERATION = 2.0;             // acceleration of the joint that moves farthest [rad/s^2]
+  constexpr std::array SPEEDS{ 0.35, 0.7, 1.05 };  // speed of the joint that moves farthest [rad/s]
   constexpr std::array WAYS{ 0.6, 0.4, -0.6, 0.5, -0.55, 0.6 };  // distance of each joint from the middle pose [rad]
   constexpr double PERIOD = 0.008;                               // time between set points [s]
   const std::size_t joints = arm.joints.size();

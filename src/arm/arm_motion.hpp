@@ -14,7 +14,7 @@ namespace hjt
 /// All joints of an arm at one time of a commanded motion.
 struct ArmSetPoint
 {
-  double time{};                    ///< time in the motion [s]
+  double time{};                    ///< time on the time axis of the motion [s]
   std::vector<JointMotion> joints;  ///< angle, speed and acceleration of each joint
 };
 
@@ -30,8 +30,8 @@ enum class ArmAccelerations : std::uint8_t
 class ArmMotion
 {
 public:
-  /// `points`: at least one set point, in the order of time. `repeats`: whether the motion continues from the first set
-  /// point after the last one, which must have the same angles.
+  /// `points`: at least one set point, in the order of time. `repeats`: whether the motion begins again after the last
+  /// set point, which must have the same angles as the first one.
   explicit ArmMotion(std::vector<ArmSetPoint> points, ArmAccelerations accelerations = ArmAccelerations::GIVEN,
                      bool repeats = false)
     : points_(std::move(points)), accelerations_(accelerations), repeats_(repeats)
@@ -50,7 +50,7 @@ public:
   /// second. A set point at the time of the second one only replaces the second. The new set point need not be at rest.
   void goOn(double time, const std::vector<JointMotion>& joints) noexcept;
 
-  /// Replaces the motion of all joints at the first set point. `joints` has an entry for each joint.
+  /// Replaces angle, speed and acceleration of each joint at the first set point. `joints` has an entry for each joint.
   void beginFrom(const std::vector<JointMotion>& joints) noexcept { points_.front().joints = joints; }
 
 private:
@@ -75,7 +75,7 @@ ArmMotion gentleMotion(const ArmDescription& arm);
 /// With a limit the speed is the moving mean of this trapezoid over the time in which the acceleration rises.
 struct ArmMove
 {
-  std::vector<double> target;  ///< angles of all joints [rad]
+  std::vector<double> target;  ///< angles of all joints after the move [rad]
   double speed{};              ///< largest speed of the joint that moves farthest [rad/s]
   double acceleration{};       ///< largest acceleration of the joint that moves farthest [rad/s^2]
   double jerk{};               ///< largest jerk of the joint that moves farthest; 0: no limit [rad/s^3]
@@ -95,8 +95,8 @@ struct ArmInstant : ArmSetPoint
 /// strokes are the last. @throws ParameterError if the arm's file gives no ArmJoint::check_up, or no limits of a joint.
 std::vector<ArmMove> checkUpMoves(const ArmDescription& arm, std::size_t joint);
 
-/// Samples the moves every `period` [s], with a rest before and after them. @throws ParameterError naming a joint that
-/// would exceed the limit of its speed or torque, or if the moves take too long.
+/// Samples the moves every `period` [s], with a rest before the first move and after the last one. @throws
+/// ParameterError naming a joint that would exceed the limit of its speed or torque, or if the moves take too long.
 std::vector<ArmInstant> sampleMoves(const ArmDescription& arm, const ArmPose& start, const std::vector<ArmMove>& moves,
                                     double period);
 }  // namespace hjt

@@ -51,7 +51,7 @@ using PlayArmRows = std::function<void(const VisitArmRows&)>;
 /// makes the rows much likelier. With `unit_is_given` the efforts have the configured unit. @throws ParameterError.
 std::vector<ArmFit> rankArms(const std::vector<ArmCandidate>& candidates, const PlayArmRows& play, bool unit_is_given);
 
-/// A function that ranks the arms of these names, the best first.
+/// A function that ranks the arms with the given names, the best first.
 using RankArms = std::function<std::vector<ArmFit>(const std::vector<std::string>&)>;
 /// Name of the arm that explains the rows better than the arm `own` by more than ArmFit::CONTRADICTED; empty: no arm
 /// does. `names` contains `own`. If no arm could explain the rows so much better, the function ranks no other arm.

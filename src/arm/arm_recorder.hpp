@@ -59,7 +59,7 @@ class ArmRecorder
 public:
   ArmRecorder(const ArmDescription& description, MovingArm& arm);  ///< `arm` must live as long as the recorder
 
-  /// The row of the present instant. It is valid until the next call.
+  /// The row of the present instant. The reference is valid until the next call.
   const ArmRow& row() noexcept;
 
 private:

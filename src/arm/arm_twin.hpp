@@ -17,7 +17,7 @@ namespace hjt
 struct ArmCoupling
 {
   double mass_rate{ 1000.0 };  ///< rate at which the mass matrix is computed, at most solver.rate [Hz]
-  int order{ 1 };  ///< order of the polynomial that extrapolates the other drives' torques, 0 to 2; 0: the last torques
+  int order{ 1 };  ///< order of the polynomial that extrapolates the other drives' torques: 0 (last torques), 1 or 2
 };
 
 /// The drives of an arm, each a Twin, coupled by the dynamics of its links. For angles q, speeds v, accelerations a:
@@ -42,10 +42,9 @@ struct ArmCoupling
 class ArmTwin
 {
 public:
-  /// `drives`: parameters of the drive of each joint, with equal solver.rate and without gravity. The least inertia
-  /// that the arm shows a drive replaces its output.load_inertia. `start`: angle of each joint at which the arm stands
-  /// with engaged brakes [rad].
-  /// @throws ParameterError naming the joint and the key.
+  /// `drives`: parameters of the drive of each joint, with equal solver.rate and without gravity. The least inertia of
+  /// the arm that a drive moves replaces the drive's output.load_inertia. `start`: angle of each joint at which the arm
+  /// stands with engaged brakes [rad]. @throws ParameterError naming the joint and the key.
   ArmTwin(const ArmDescription& arm, std::vector<Parameters> drives, const std::vector<double>& start,
           const SurfaceSource& surface_source = {}, const ArmCoupling& coupling = {});
 

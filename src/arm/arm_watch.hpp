@@ -50,7 +50,7 @@ public:
   const std::vector<FittedFriction>& frictions() const { return frictions_; }
   /// Whether an evaluation has ended and no load is on trial.
   bool isSettled() const { return has_looked_ && !isTrying(); }
-  /// The arm with the payload and the mounting with which the joints are judged.
+  /// The arm with the load (payload, mounting, drag) with which the joints are judged.
   const ArmDescription& arm() const { return arm_; }
 
 private:

@@ -20,7 +20,7 @@ struct IdentifiedPayload
   Payload configured;
   double mass{};                              ///< mass at the flange that fits the currents best [kg]
   double mass_half_width{};                   ///< half width of the mass's 95 % interval [kg]
-  std::array<double, 3> moment{};             ///< mass times centre, in the frame of the tip [kg.m]
+  std::array<double, 3> moment{};             ///< mass x centre of mass, in the frame of the tip [kg.m]
   std::array<double, 3> moment_half_width{};  ///< half widths of the moments' 95 % intervals [kg.m]
   double least_claim{};                       ///< mass that an arm with these links can show without a payload [kg]
 
@@ -82,7 +82,7 @@ struct FoundLoad
   double gain_half_width{};  ///< half width of the gain's 95 % interval [-]
 
   /// Says why no joint can be judged: the currents of all joints differ from the expected currents by a factor that
-  /// gains of one type do not have. Returns no misfit if there is no such factor.
+  /// gains of one type do not have. Returns an empty misfit if there is no such factor.
   Misfit misfit() const;
   /// This load with only the payload after the last change. `since` is the time of that change.
   FoundLoad last() const;
@@ -99,8 +99,8 @@ struct AssumedLoad
   double since{ -HUGE_VAL };                   ///< time from which on the arm carries the payload [s]
 
   bool isConfigured() const { return !payload && !mounting && !drag; }
-  std::string text() const;                   ///< sentences that describe the load; empty: it is the configured load
-  void configure(ArmDescription& arm) const;  ///< puts the load in place of the configured load of `arm`
+  std::string text() const;                   ///< sentences on the load; empty: the load is the configured one
+  void configure(ArmDescription& arm) const;  ///< replaces the load of `arm` by this load
   /// Payloads of the arm over time; empty if the payload does not change.
   PayloadCourse course(const Payload& configured) const;
 };
@@ -115,11 +115,11 @@ struct JudgedJoints
 
   std::vector<Misfit> misfits;  ///< misfit of each joint: that of the joint, or that of all joints
   std::vector<MeasuredFriction> frictions;
-  std::vector<bool> measured;  ///< false: the joint has no measured current, so it cannot check the load
+  std::vector<bool> measured;  ///< whether a joint has a measured current, so that it can check the load
   ArmFriction common;
 };
 
-/// Gives the misfit to each joint that has no misfit yet.
+/// Gives `misfit` to each joint that has no misfit in `misfits`.
 void addMisfit(const Misfit& misfit, std::vector<Misfit>& misfits);
 
 /// Rules by which another load replaces the configured one, for recordings and live telemetry alike. The class tries a

@@ -64,7 +64,7 @@ public:
   {
     double size{ 1.0 };  ///< common factor of all currents; 1 if it is within the scatter of one type [-]
     double left{ 1.0 };  ///< share of the currents that the causes do not explain, rms [-]
-    double cost{};       ///< negative logarithm of a likelihood that allows for errors of the models [-]
+    double cost{};       ///< negative logarithm of a likelihood in which the models may have errors [-]
   };
   /// How well the arm explains the currents of joints for which `counts` is true, with the best payload and mounting.
   Fit explained(const std::vector<bool>& counts);

@@ -23,7 +23,7 @@ struct ProtectiveStop
 {
   Stamp stamp{};         ///< stamp at which the controller stopped the arm
   std::size_t joint{};   ///< number of the joint, from the base on
-  const char* reason{};  ///< reason in words, as in "off its set point"
+  const char* reason{};  ///< reason in words, for example "off its set point"
 };
 
 /// A twin of an arm that follows set points under its controller. After a reset the brakes hold the arm for half of the
@@ -40,7 +40,7 @@ class MovingArm
 public:
   static constexpr double CONTROL_RATE = 2000.0;  ///< rate of the controller [Hz]
   static constexpr double SETTLING = 0.5;         ///< settling time if no other is given [s]
-  static constexpr double STOP_DEVIATION = 0.1;   ///< deviation from the set point that stops the arm [rad]
+  static constexpr double STOP_DEVIATION = 0.1;   ///< deviation from a joint's set point that stops the arm [rad]
   static constexpr double STOP_SPEED = 1.1;       ///< speed over ArmJoint::speed_limit from which on the arm stops [-]
   static constexpr double STILL = 0.1;            ///< largest speed of a joint at which unlock() works [rad/s]
 
@@ -90,7 +90,7 @@ public:
   const ArmController& controller() const noexcept { return controller_; }
 
 private:
-  double leadIn() const noexcept { return lead_in_.end() - lead_in_.begin(); }  // [s]
+  double leadIn() const noexcept { return lead_in_.end() - lead_in_.begin(); }  // duration of the lead-in [s]
   void control() noexcept;
   void watch() noexcept;
   void wantedAt(Stamp stamp, std::vector<JointMotion>& motion) noexcept;
@@ -105,7 +105,7 @@ private:
   bool is_commanded_{};
   Stamp motion_begin_{};
   Stamp command_begin_{};
-  std::vector<JointMotion> set_point_;  // set point of each joint at the last control
+  std::vector<JointMotion> set_point_;  // set point of each joint at the last call of control()
   std::vector<double> fastest_;         // speed of each joint above which the arm stops [rad/s]
   std::optional<ProtectiveStop> stop_;
   bool is_held_{};  // true: after unlock() the controller holds the arm at the last set point

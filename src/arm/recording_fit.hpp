@@ -77,7 +77,7 @@ public:
   FittedFactor stampFactor() const;
   EffortFit effort() const;
   const JointReach& reach(std::size_t joint) const { return joints_[joint].reach; }
-  std::vector<bool> measured() const;  ///< whether the current of each joint changes as measured currents do
+  std::vector<bool> measured() const;  ///< whether the currents of each joint are measured, so that they vary
   bool hasVelocity(std::size_t joint) const { return joints_[joint].time.hasVelocity(); }
   /// Fit of the joint's angle and velocity.
   const TimeFit& timeFit(std::size_t joint) const { return joints_[joint].time; }
@@ -100,7 +100,7 @@ public:
   std::vector<RecordingFinding> ofArm() const;
   std::vector<RecordingFinding> ofJoint(std::size_t joint) const;
 
-  /// Whether the findings are final: there are enough rows, or the joints have moved for PATIENCE.
+  /// Whether the findings are final: stampFactor() and effort() are known, or the joints have moved for PATIENCE.
   bool isSettled() const;
 
   /// Misfit of each joint: the first finding on the arm or on the joint that prevents the joint's verdict.
@@ -122,7 +122,7 @@ private:
     JointReach reach;
     std::uint64_t moving_rows{};
     std::uint64_t fast_rows{};  // number of rows with a speed that no joint has
-    double last_current{};      // [A]
+    double last_current{};      // current of the last row [A]
     double unchanged{};         // time of motion since the last change of the current [s]
   };
 
@@ -132,7 +132,7 @@ private:
   std::vector<Joint> joints_;
   double last_time_{ std::numeric_limits<double>::quiet_NaN() };
   double moving_{};     // time in which at least one joint moved [s]
-  double slow_time_{};  // sum of the steps that are longer than SLOW_ROWS [s]
+  double slow_time_{};  // sum of the times between rows that exceed SLOW_ROWS [s]
   std::uint64_t slow_rows_{};
   std::uint64_t rows_{};
 };

@@ -34,7 +34,7 @@ public:
   void setPayload(const Payload& payload) noexcept { payload_ = payload; }  ///< replaces the payload of the description
 
 private:
-  /// A link with its fields as in ArmLink.
+  /// A link of the arm, with fields as in ArmLink.
   struct Link
   {
     LinkMotion motion{};

@@ -86,8 +86,8 @@ ArmFriction ofWholeArm(const std::vector<MeasuredFriction>& joints, double toler
   return arm;
 }
 
-/// Standard deviation of the logarithm of the other joints' mean factor, by the part of their scatter that exceeds the
-/// scatter of sound joints from one recording to the next [-].
+/// Standard deviation of the logarithm of the mean factor of the group's joints without `joint`, by the part of their
+/// scatter that exceeds the scatter of sound joints from one recording to the next [-].
 double scatterBeside(std::size_t joint, const JointGroup& group, const std::vector<MeasuredFriction>& joints,
                      const std::vector<double>& factors)
 {

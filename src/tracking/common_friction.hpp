@@ -32,11 +32,11 @@ struct MeasuredFriction
   double temperature{};              ///< temperature at which the expected friction holds [degC]
   bool temperature_received{};       ///< whether `temperature` was received
   std::function<double(double)> at;  ///< mean friction of the twin in the measured motion [N.m] at a temperature [degC]
-  bool is_below_faults{};            ///< the joint has less friction than any fault leaves
-  bool is_none{};                    ///< the joint has nearly no friction
-  bool is_against{};                 ///< the measured current has the opposite sign of the predicted current
-  bool is_load_wrong{};              ///< the measured current fits no load of this joint
-  bool is_to_own{};                  ///< the expected friction is that of this joint when the joint was sound
+  bool is_below_faults{};            ///< whether the joint has less friction than any fault leaves
+  bool is_none{};                    ///< whether the joint has nearly no friction
+  bool is_against{};                 ///< whether measured and predicted current have opposite signs
+  bool is_load_wrong{};              ///< whether the measured current fits no load of this joint
+  bool is_to_own{};                  ///< whether the expected friction is this joint's own when it was sound
 };
 
 /// A group of joints that are assumed to be built and warmed alike: the joints from base to elbow, or the wrists.

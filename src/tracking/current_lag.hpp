@@ -79,7 +79,7 @@ public:
     take();
   }
 
-  /// LoadRegression::leftByLoad for each lag [A^2].
+  /// Result of LoadRegression::leftByLoad() for each lag [A^2].
   std::array<double, LAGS> left() const
   {
     std::array<double, LAGS> left;

@@ -102,8 +102,8 @@ public:
   }
 
   void clear() noexcept { values_.clear(); }
-  void mark() noexcept { values_.mark(); }                                 ///< as HeldValues
-  void jumpBack(double earliest) noexcept { values_.jumpBack(earliest); }  ///< as HeldValues
+  void mark() noexcept { values_.mark(); }                                 ///< as HeldValues::mark()
+  void jumpBack(double earliest) noexcept { values_.jumpBack(earliest); }  ///< as HeldValues::jumpBack()
 
   std::uint64_t refused() const noexcept { return refused_; }
 
@@ -112,7 +112,7 @@ private:
   std::uint64_t refused_{};
 };
 
-/// Temperature of the grease of a measured joint, by the losses in its motion.
+/// Temperature of the grease of a measured joint, computed from the losses in the joint's motion.
 ///
 /// With thermal.model = none the grease has the temperature of the sample, or the configured temperature if the sample
 /// has none. With two_nodes a measured temperature is that of the housing near the motor, and the grease is warmer than
@@ -186,8 +186,8 @@ private:
   bool on_;
   bool started_{};
   double last_{};             // time of the last sample [s]
-  double elapsed_{};          // time since the last step of the nodes [s]
-  DriveHeat::Losses losses_;  // losses since the last step of the nodes
+  double elapsed_{};          // time since the last step of heat_ [s]
+  DriveHeat::Losses losses_;  // losses since the last step of heat_ [J]
   double friction_power_{};   // power of the friction since the last sample [W]
   double copper_power_{};     // power of the copper loss since the last sample [W]
 };

@@ -110,7 +110,8 @@ double JointEvidence::addToReach(const MotionSample& sample) noexcept
   return step;
 }
 
-/// Adds a row to the sums for loadFactor(). Rows of a contact count too, because a wrong gain can look like a contact.
+/// Adds a row to the sums for loadFactor(). Rows shortly after a contact count too, because a wrong gain can look like
+/// a contact.
 void JointEvidence::addGain(const MotionSample& sample, double residual, double step) noexcept
 {
   if (std::abs(sample.velocity) > FrictionPoints::SLOWEST && predicted_.tellsFriction())

@@ -94,10 +94,10 @@ public:
     return twinAmplitude() < MIN_VARIED ? std::numeric_limits<double>::quiet_NaN() : fitted().coefficient(TWIN, 0);
   }
 
-  /// Standard deviation of the twin's torsion over the rows [rad].
+  /// Standard deviation of the twin's torsion from row to row [rad].
   double twinAmplitude() const { return std::sqrt(std::max(0.0, covariance(TWIN, TWIN))); }
 
-  /// Standard deviation over the rows of cos(joint angle + phase), for the phase that makes it largest [-].
+  /// Standard deviation over the rows of cos(joint angle + phase), for the phase that gives the largest deviation [-].
   double turnAmplitude() const
   {
     const double cosines = covariance(COSINE, COSINE);
@@ -184,7 +184,7 @@ public:
 private:
   TelemetryParameters telemetry_;
   double ratio_;
-  double temperature_;  // temperature for samples without a temperature [degC]
+  double temperature_;  // assumed temperature of samples without one [degC]
   SignalMonitor monitor_;
   Assessor assessor_;
 };
@@ -235,7 +235,7 @@ public:
       moved_ = beyond_ = mean_ = 0.0;
       return;
     }
-    constexpr double ROWS = 4.0;  // least number of rows in the window of the rates
+    constexpr double ROWS = 4.0;  // least number of rows from which rates are computed
     const double smeared = std::max(0.0, ROWS * step - 2.0 * MotionDifferentiator::HALF_WIDTH);
     Usual& usual = usual_[way > 0 ? 1 : 0];
     const double bound =
@@ -323,7 +323,7 @@ struct MotionReach
   std::uint64_t touched_rows{};      ///< rows during a contact or less than ContactWatch::HOLD after it; do not count
   double begin{};                    ///< time of the first row [s]
   double end{};                      ///< time of the last row [s]
-  double sampled{};                  ///< sum of the steps from row to row, without gaps [s]
+  double sampled{};                  ///< sum of the times from row to row, without gaps [s]
   double least_load{};               ///< least load [N.m]
   double most_load{};                ///< largest load [N.m]
   double least_angle{};              ///< least angle [rad]
@@ -441,7 +441,7 @@ public:
   const std::optional<Assessment>& tooFew() const { return now_.too_few; }
   double alarmTime() const { return now_.alarm_time; }  ///< time of the first window whose level is not OK [s]
   Cause cause() const;                                  ///< most frequent cause of the windows whose level is not OK
-  double causeShare() const;  ///< share of the windows not at level OK that have the cause cause() [-]
+  double causeShare() const;                            ///< share of cause() in the windows whose level is not OK [-]
 
 private:
   static constexpr int LOAD_STEPS = 568;  // number of steps of the load in the histogram [-]

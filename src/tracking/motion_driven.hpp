@@ -175,7 +175,7 @@ struct MotionPrediction
 };
 
 /// The twin driven by a measured motion: predicts torque and current of the motor. The friction comes from a table
-/// (FrictionMap), so no ring is solved.
+/// (FrictionMap), so the twin solves no ring.
 ///
 ///   current = (load + vibration + J_m n^2 a + n s T_f(n |v|, load) + T_r) / gain + offset
 /// where n   ratio; a, v: acceleration and speed of the joint; J_m: inertia of motor and wave generator
@@ -230,7 +230,7 @@ public:
     return predicted_ = predict(predicted_at_);
   }
 
-  /// The prediction for the last sample if the grease had this temperature [degC].
+  /// The prediction for the last sample, if the temperature of the grease were `temperature` [degC].
   MotionPrediction at(double temperature) const noexcept
   {
     return temperature == predicted_at_ ? predicted_ : predict(temperature);

@@ -97,7 +97,7 @@ void Observer::start(const Measurement& measurement) noexcept
   started_ = true;
 }
 
-/// Advances the state and its covariance by one step.
+/// Advances the state and its covariance by one step of the filter.
 void Observer::predict(double motor_torque, double load_torque, double temperature) noexcept
 {
   const double torsion = state_[0] / ratio_ - state_[2];

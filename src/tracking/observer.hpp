@@ -61,7 +61,7 @@ struct Measurement
 /// Estimate of the observer after a measurement.
 struct Observation
 {
-  double motor_angle{};      ///< motor angle; output angle and load at the start define its zero [rad]
+  double motor_angle{};      ///< motor angle; output angle and load at the start define the zero [rad]
   double motor_velocity{};   ///< speed of the motor [rad/s]
   double output_angle{};     ///< angle of the output [rad]
   double output_velocity{};  ///< speed of the output [rad/s]

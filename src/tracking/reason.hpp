@@ -79,7 +79,8 @@ struct FittedFriction
   /// to 0.07, and a sound joint beside a joint with 60 % more friction deviates by 0.11.
   static constexpr double BOUND = 0.15;
   bool departs() const { return lower > 1.0 + BOUND || upper < 1.0 - BOUND; }
-  /// Whether the friction is within `tolerance` of the expected friction, also by the rows alone.
+  /// Whether the interval of the factor lies within 1 - tolerance and 1 + tolerance, also the interval from the rows
+  /// alone.
   bool isWithin(double tolerance) const
   {
     return std::max(upper, factor + of_rows) < 1.0 + tolerance && std::min(lower, factor - of_rows) > 1.0 - tolerance;

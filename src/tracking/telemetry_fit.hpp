@@ -46,7 +46,7 @@ public:
     return way_ > LEAST_WAY ? products_ / squares_ : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// A clause that the ratio is wrong; empty: the ratio is as configured, or not known.
+  /// Clause that says that the ratio is wrong; empty: the ratio is as configured, or not known.
   std::string text() const
   {
     const double found = ratio();
@@ -77,7 +77,7 @@ struct FittedFactor
   double uncertainty{};                                      ///< standard deviation of the factor
 };
 
-/// Checks whether the recorded velocities of a joint agree with the slopes of its angles over the stamps.
+/// Checks whether the recorded velocities of a joint agree with the slopes of its angles over the times of the stamps.
 ///
 /// The class averages velocities and slopes over pieces of 0.1 s. The factor is the weighted median of slope / velocity
 /// over windows of 0.8 s with motion, so that single wrong rows do not count. The lag of the velocity follows from

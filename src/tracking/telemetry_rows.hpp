@@ -56,7 +56,7 @@ struct StreamTimingReport
   double jitter{};           ///< 95 % of the rows arrive within `offset` + `jitter` after their stamps [s]
 };
 
-/// Watches the stamps of a stream and the times when its rows arrive. Memory is fixed; nothing allocates.
+/// Watches the stamps of a stream and the times when its rows arrive. The memory has a fixed size; nothing allocates.
 class StreamTiming
 {
 public:
@@ -167,7 +167,7 @@ private:
 /// Numbers of rows that RowFilter dropped, for each reason.
 struct LeftOutRows
 {
-  std::uint64_t impossible{};   ///< a value is not finite, or larger than a sound message can hold
+  std::uint64_t impossible{};   ///< a value is not finite, or larger than in any undamaged message
   std::uint64_t unreachable{};  ///< an angle contradicts those of the rows before and after
   std::uint64_t repeated{};     ///< all values are those of the row before, although the joints move
   std::uint64_t bunched{};      ///< the row follows sooner than a quarter of the mean time between rows
@@ -260,10 +260,10 @@ public:
 
 private:
   static constexpr std::size_t ROOM = 16;       // largest number of rows that the filter holds back
-  static constexpr double MARGIN = 1.2;         // factor on the greatest speed [-]
+  static constexpr double MARGIN = 1.2;         // largest speed between rows over the greatest speed [-]
   static constexpr double MOVING = 0.01;        // least speed of a joint that moves [rad/s]
   static constexpr double BUNCHED = 0.25;       // time to a bunched row over the mean time between rows, at most [-]
-  static constexpr double MEMORY = 64.0;        // number of rows over which the mean step is averaged
+  static constexpr double MEMORY = 64.0;        // number of rows over which mean_step_ is averaged
   static constexpr std::uint64_t SETTLED = 16;  // number of rows from which on the mean time between rows is known
 
   bool canReach(const Rows& from, const Rows& to) const noexcept
@@ -380,7 +380,7 @@ private:
   bool is_confirmed_{};  // whether the rows in last_ have passed
   bool moves_{};         // whether the joints moved between the last two rows
   std::uint64_t rows_{};
-  double mean_step_{};  // mean step between rows [s]
+  double mean_step_{};  // mean time between rows [s]
   double kept_{};       // time of the last row that was not bunched [s]
   LeftOutRows left_out_;
 };

@@ -226,7 +226,7 @@ public:
   /// later than the row before, and its values possible. The function ignores MotionRow::load.
   Comparison compare(MotionSample sample) noexcept;
 
-  /// Whether the last comparison had a load, or telemetry.load expects none.
+  /// Whether the load of the last comparison was known: a load was received, or telemetry.load expects none.
   bool isLoadKnown() const noexcept { return load_is_known_; }
 
   TrackerCounters counters() const noexcept;
@@ -234,8 +234,9 @@ public:
   /// Share of the rows with a current outside its band, averaged over OUTSIDE_MEMORY [-].
   double outsideShare() const noexcept { return outside_share_; }
 
-  /// Evidence on the measured joint. The evidence is the same in every mode. During a contact the tracker does not
-  /// judge the health, and outsideShare does not change. After the contact the health starts again.
+  /// Evidence on the measured joint. The evidence is the same in every mode. Rows during a contact, and for
+  /// ContactWatch::HOLD after it, do not count for evidence and outsideShare(). The windows of the signals then start
+  /// again.
   const JointEvidence& evidence() const noexcept { return evidence_; }
 
   /// Clears the evidence, so that only later rows count for the next verdict.

@@ -42,7 +42,7 @@ struct FrictionFactor
   double deviation{};  ///< standard deviation of the factor's logarithm [-]
   double scatter{};    ///< part of `deviation` by the scatter of the rows [-]
   FrictionReference reference{ FrictionReference::TWIN };
-  bool is_below_faults{};          ///< the joint has less friction than any fault leaves
+  bool is_below_faults{};          ///< whether the joint has less friction than any fault leaves
   Reason reason{ Reason::SOUND };  ///< reason why the friction is not judged; SOUND: it is judged
   std::string why_not;             ///< `reason` as a sentence; empty: the friction is judged
 
@@ -62,7 +62,7 @@ struct OwnReference
   double temperature{
     std::numeric_limits<double>::quiet_NaN()
   };                              ///< temperature of the recordings; NaN: not known [degC]
-  double friction_deviation{};    ///< standard deviation of the friction by the scatter of the rows, as a share [-]
+  double friction_deviation{};    ///< relative standard deviation of the friction by the scatter of the rows [-]
   std::size_t recordings{ 1 };    ///< number of recordings that show the friction
   double recordings_deviation{};  ///< relative standard deviation of the friction between recordings [-]
   bool is_unjudged{};             ///< whether recordings were given, but none of them shows the joint's friction
@@ -76,7 +76,7 @@ struct JointContext
   bool has_controller{};  ///< whether the friction that the controller expects is the reference without `own`
   /// Common friction factor of the joints [-]. Its cause is temperature or gain, not a fault.
   double arm_friction{ 1.0 };
-  Misfit misfit{};  ///< why the rows of the joint are not judged
+  Misfit misfit{};  ///< why the rows of the joint are not judged; empty: they are judged
   /// Standard deviation of the logarithm of `arm_friction` [-]; 0: other joints of the group confirm the factor.
   double arm_deviation{ UNWITNESSED };
   FittedFriction fitted{};
@@ -263,7 +263,7 @@ FrictionFactor frictionFactor(const JointEvidence& evidence, const JointContext&
 struct SoundFriction
 {
   std::vector<FrictionPoint> points;
-  double deviation{};  ///< standard deviation of the friction by the scatter of the rows, as a share [-]
+  double deviation{};  ///< relative standard deviation of the friction by the scatter of the rows [-]
 };
 
 /// Makes a reference of several recordings of a joint: mean friction at each speed, and standard deviation between the
@@ -293,7 +293,7 @@ struct GainEvidence
     return load.value > 0.0 && !isAlike() && std::abs(load.value - friction) > DEVIATIONS * load.uncertainty;
   }
 
-  /// Whether the factor of the friction is nearer to that of the load than to 1. If not, a wrong load is as likely.
+  /// Whether the friction's factor is nearer to the load's factor than to 1. If not, a wrong load is as likely.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
   /// Misfit by a wrong gain; empty: both factors differ, that of the load is near 1, or the load is too small.

@@ -17,7 +17,7 @@ namespace hjt
 class VerdictWatch
 {
 public:
-  /// `tracker` must outlive this object. `known`: the reference of the joint.
+  /// `tracker` must outlive this object. `known`: reference of the joint, and what else is known of the joint.
   VerdictWatch(Tracker& tracker, JointContext known) : tracker_(tracker), known_(std::move(known)) {}
 
   /// Sets the misfit of the telemetry; empty: the telemetry fits. `settled`: whether `misfit` is final.
