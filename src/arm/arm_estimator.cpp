@@ -65,23 +65,23 @@ int slopeOf(int used)
 }
 
 // Widths of the priors of the terms, chosen from recordings of a UR5 and a UR10e (docs/arm.md, Payload).
-constexpr double MASS = 0.3;             // mass of the payload [kg]
-constexpr double MOMENT = 0.05;          // moments of the payload [kg.m]
-constexpr double TILT = 0.2;             // change of gravity [m/s^2]
-constexpr double TOOL_DRAG = 2.0;        // drag [N]
-constexpr double JUMP_MASS = 1.0;        // change of the payload's mass [kg]
-constexpr double JUMP_MOMENT = 0.1;      // change of the payload's moments [kg.m]
-constexpr double ARM_GAIN = 0.01;        // factor of all gains - 1 [-]
-constexpr double ARM_FRICTION = 0.1;     // factor of all frictions - 1 [-]
-constexpr double ARM_COLD = 1.0;         // coldness of all drives [10 K]
-constexpr double GROUP_FRICTION = 0.04;  // factor of a group's frictions - 1 [-]
-constexpr double JOINT_GAIN = 0.03;      // factor of a joint's gain - 1 [-]
+constexpr double MASS = 0.3;             // prior width of the payload's mass [kg]
+constexpr double MOMENT = 0.05;          // prior width of the payload's moments [kg.m]
+constexpr double TILT = 0.2;             // prior width of the change of gravity [m/s^2]
+constexpr double TOOL_DRAG = 2.0;        // prior width of the drag [N]
+constexpr double JUMP_MASS = 1.0;        // prior width of the change of the payload's mass from leg to leg [kg]
+constexpr double JUMP_MOMENT = 0.1;      // prior width of the change of the payload's moments from leg to leg [kg.m]
+constexpr double ARM_GAIN = 0.01;        // prior width of the common factor of all gains [-]
+constexpr double ARM_FRICTION = 0.1;     // prior width of the common factor of all frictions [-]
+constexpr double ARM_COLD = 1.0;         // prior width of the common coldness of all drives [10 K]
+constexpr double GROUP_FRICTION = 0.04;  // prior width of the common factor of a group's frictions [-]
+constexpr double JOINT_GAIN = 0.03;      // prior width of the factor of one joint's gain [-]
 constexpr double ALIKE_GAIN = 0.003;     // as JOINT_GAIN, if the joint's load is less than its friction [-]
-constexpr double JOINT_FRICTION = 0.05;  // factor of a joint's friction - 1 [-]
-constexpr double JOINT_COLD = 0.3;       // coldness of a joint's drive [10 K]
-constexpr double JOINT_OFFSET = 0.1;     // offset of a joint's current [A]
-constexpr double JOINT_LOSS = 0.02;      // loss of a joint over its load [-]
-constexpr double JOINT_INERTIA = 0.3;    // relative change of the inertia of a joint's rotor [-]
+constexpr double JOINT_FRICTION = 0.05;  // prior width of the factor of one joint's friction [-]
+constexpr double JOINT_COLD = 0.3;       // prior width of the coldness of one joint's drive [10 K]
+constexpr double JOINT_OFFSET = 0.1;     // prior width of the offset of one joint's current [A]
+constexpr double JOINT_LOSS = 0.02;      // prior width of one joint's loss over its load [-]
+constexpr double JOINT_INERTIA = 0.3;    // prior width of the relative change of one rotor's inertia [-]
 
 constexpr std::size_t FEWEST = 20;  // least number of rows of a joint that counts
 
@@ -280,7 +280,7 @@ std::vector<bool> ArmEstimator::parted(const Point& by) const
   return states;
 }
 
-/// For each leg the state that fits the leg's rows better, with the terms of the point `by`.
+/// Returns for each leg the state that fits the leg's rows better, with the terms of the point `by`.
 std::vector<bool> ArmEstimator::likelier(const Point& by) const
 {
   std::vector<double> costs(legs_);  // cost of state 1 - cost of state 0, for each leg

@@ -14,8 +14,8 @@ namespace hjt
 {
 namespace
 {
-/// The found payload or mounting with the configured one of the arm's file, if found and configured differ; none if
-/// they agree. `counts`: the present payload or mounting.
+/// Sets found.configured to the value of the arm's file. Returns none if the found value agrees with the value of the
+/// file. `counts`: the present payload or mounting.
 template <class Found>
 std::optional<Found> named(Found found, const std::optional<Found>& counts)
 {

@@ -54,7 +54,7 @@ struct EffortFit
 {
   FittedFactor factor;  ///< measured current over the current that the load takes; NaN: too little load [-]
   EffortUnit unit{};    ///< unit of the efforts that the recording shows, otherwise the configured unit
-  bool is_known{};      ///< whether the factor fits `unit`
+  bool is_known{};      ///< whether the factor agrees with efforts in `unit`
 };
 
 /// Checks whether the rows of an arm fit together: angles with velocities and stamps, and currents with the load.
