@@ -65,8 +65,8 @@ private:
   static constexpr double MEMORY = 10.0;  // time constant with which the sums forget old rows [s]
   static constexpr double START = 0.25;   // first value of both sums, as after 1 s at 0.5 rad/s [rad^2/s]
 
-  /// Time from the rows of the last call to `rows` [s]: that by the motion if it differs from that by the stamps by
-  /// more than SIGNIFICANT, otherwise that by the stamps.
+  /// Time from the rows of the last call to `rows` [s]: the estimate from the motion if it differs from the interval of
+  /// the stamps by more than SIGNIFICANT, otherwise the interval of the stamps.
   double interval(const std::vector<MotionRow>& rows) noexcept
   {
     const double by_stamps = rows.front().time - last_.front().time;

@@ -25,8 +25,9 @@ enum class ArmAccelerations : std::uint8_t
   OF_CUBICS  ///< second derivatives of the cubics, whatever accelerations the set points have
 };
 
-/// A commanded motion through set points. Between two set points the angles follow cubics with their angles and speeds.
-/// Before the first set point, and after the last one, the joints stand still at the angles of this set point.
+/// A commanded motion through set points. Between two set points the angles follow cubics that have the angles and
+/// speeds of both set points. Before the first set point, and after the last one, the joints stand still at the angles
+/// of this set point.
 class ArmMotion
 {
 public:

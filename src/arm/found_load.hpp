@@ -27,7 +27,7 @@ struct IdentifiedPayload
   /// Whether `mass` differs from the configured mass by more than its half width and by more than `least_claim`.
   bool differs() const;
   bool isCarried() const { return mass > mass_half_width; }  ///< whether the 95 % interval of the mass lies above zero
-  /// Whether differs() is true, and the currents show a mass above zero, or none although a payload is configured.
+  /// Whether differs() is true, and the currents show a mass above zero, or no mass although a payload is configured.
   bool isOther() const;
   Payload payload() const;  ///< the payload with its centre of mass; a payload without mass if isCarried() is false
   /// The clause "the currents show a payload of ... at the flange, but ... kg is configured. ...".

@@ -168,7 +168,7 @@ void LoadFit::addTo(std::size_t number, const MotionSample& sample, const Motion
                     const UnitLoads::Torques& torques)
 {
   constexpr double COLDER = 10.0;     // by how much the drive of ArmEstimator::Row::cold is colder [K]
-  constexpr double LEAST_LOAD = 0.1;  // least change of the load for the slope `rise` [N.m]
+  constexpr double LEAST_LOAD = 0.1;  // least change of the load over which `rise` is computed [N.m]
   Joint& joint = joints_[number];
   const double gain = joint.drive.gain;
   const double own = joint.drive.friction;

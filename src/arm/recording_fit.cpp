@@ -41,7 +41,7 @@ bool differs(const FittedFactor& factor, double from)
   return std::abs(factor.value - from) > std::max(FACTOR_OFF * std::abs(from), DEVIATIONS * factor.uncertainty);
 }
 
-/// Whether gains of one type, and payloads with which joints can be judged, cannot make the factor current / load.
+/// Whether neither gains of one type nor payloads with which joints can be judged cause this factor on the currents.
 bool isOtherLoad(const FittedFactor& factor)
 {
   constexpr double OTHER = 1.7;

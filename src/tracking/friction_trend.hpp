@@ -46,7 +46,7 @@ struct FrictionTrend
   double changeLow() const { return std::exp(slopeLow() * span); }
   double changeHigh() const { return std::exp(slopeHigh() * span); }
 
-  /// Whether the whole interval of the change lies above MORE_THAN_OWN or below LESS_THAN_OWN.
+  /// Whether the whole interval of change() lies above 1 + MORE_THAN_OWN or below 1 - LESS_THAN_OWN.
   bool departs() const { return changeLow() > 1.0 + MORE_THAN_OWN || changeHigh() < 1.0 - LESS_THAN_OWN; }
 
 private:

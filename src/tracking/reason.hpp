@@ -26,7 +26,7 @@ enum class Reason : std::uint8_t
   EFFORT_TOO_LARGE = 11,  ///< the effort is several times the current that the motion needs: its unit or gain is wrong
   COMMON_FRICTION = 12,   ///< no temperature explains the friction of the whole arm
   TELEMETRY_UNSETTLED = 13,  ///< the program does not know yet whether angles and efforts fit together
-  ROW_RATE = 14,             ///< the rows are too far apart in time
+  ROW_RATE = 14,             ///< the rows are too far apart in time to show accelerations
   STAMPS = 15,               ///< the stamps do not fit the angles, velocities or currents
   ANGLE_UNIT = 16,           ///< the angles are not in rad
   EFFORT_UNIT = 17,          ///< the effort has another unit or gain than configured

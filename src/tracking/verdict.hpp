@@ -228,7 +228,7 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
 /// Sentence on the causes of a finding; empty: no signatures of faults are known.
 std::string possibleFaults(const Verdict& verdict, const Finding& finding);
 
-std::string sentence(std::string clause);  ///< makes a sentence of a clause
+std::string sentence(std::string clause);  ///< the clause with a capital letter and a full stop
 
 /// ERROR if |deviation| > `tolerance` x `error_factor`, otherwise WARN if |deviation| > `tolerance`, otherwise OK.
 VerdictLevel levelOf(double deviation, double tolerance, double error_factor);

@@ -100,7 +100,7 @@ private:
   {
     const MotionReach& reach = tracker_.evidence().reach();
     last_row_ = reach.end;
-    const bool is_new = confirmed_at_ > reach.end;  // whether the telemetry started again
+    const bool is_new = confirmed_at_ > reach.end;  // true: the telemetry started again
     Verdict verdict = hjt::judge(tracker_.evidence(), context);
     const bool is_in_place = confirmed_.isJudged() && !whyNotJudged() && !is_new;
     // A misfit that the rows show replaces the verdict only after CONFIRMED_AFTER. Too few rows replace no verdict.
