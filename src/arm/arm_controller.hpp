@@ -42,7 +42,8 @@ public:
     dynamics_.setPayload(payload);
   }  ///< sets the payload whose torque the controller feeds forward
 
-  /// Commands the torque of each drive from now on, by the present set point. Call this whenever isDue() is true.
+  /// Commands the torque of each drive from now on, by the present set point. Call this function whenever isDue() is
+  /// true.
   void control(ArmTwin& twin, const std::vector<JointMotion>& set_point) noexcept;
 
   bool isDue(const ArmTwin& twin) const noexcept;  ///< whether a period of the control begins at the present instant

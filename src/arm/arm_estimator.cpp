@@ -563,7 +563,8 @@ ArmEstimator::Point ArmEstimator::refine(const Prior& prior, const std::vector<b
       break;
     }
     cost = point.cost;
-    // Steps shrink by nearly the same ratio each round, so every second step becomes the sum of itself and later ones.
+    // Steps shrink by nearly the same ratio each round, so every second step is replaced by the sum of this step and
+    // all later steps.
     const Eigen::VectorXd step = point.information.ldlt().solve(right);
     const Eigen::VectorXd weighted = point.information.diagonal().cwiseProduct(last_step);
     const double size = last_step.dot(weighted);

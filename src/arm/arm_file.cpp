@@ -18,7 +18,7 @@ namespace
 constexpr const char* LIKE = "like";
 constexpr const char* DESCRIPTION = "description";
 constexpr int MAX_FILES = 8;  // largest number of files in a chain in which each file is like the next
-// These limits are needed because an alias of YAML can contain itself or many copies of other values.
+// Limits of nested levels and of values, needed because an alias of YAML can contain itself or many copies of values.
 constexpr int MAX_DEPTH = 32;
 constexpr std::size_t MAX_VALUES = 100'000;
 

@@ -60,7 +60,7 @@ struct FoundDrag
   std::string text() const;
 };
 
-/// A change of the payload between the found payload and another one.
+/// A change from the found payload to another payload, or from another payload to the found one.
 struct PayloadChange
 {
   double time{};    ///< time of the change [s]

@@ -15,7 +15,8 @@ namespace hjt
 namespace
 {
 // Cost of a mounting other than configured, of a changing payload, or of a drag [-]: natural logarithm of how rare it
-// is. In recordings of a UR5 and a UR10e with a constant payload, a changing payload lowers the other cost by up to 8.
+// is. In recordings of a UR5 and a UR10e with a constant payload, a changing payload lowers the cost of the fit by up
+// to 8.
 constexpr double OTHER_CAUSE = 10.0;
 constexpr double TOLD = 1.0;    // largest half width by the rows alone with which a friction factor is known [-]
 constexpr double FLOOR = 0.02;  // share of the currents of a real arm that no twin explains [-]

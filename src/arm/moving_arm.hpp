@@ -56,7 +56,7 @@ public:
   bool step(Stamp until) noexcept;
 
   /// Begins another motion now, from the present set point, which replaces the first set point of `motion`. The
-  /// function swaps `motion` with the motion of the last call, so that it need not release memory.
+  /// function swaps `motion` with the motion of the last call, so that the call releases no memory.
   void follow(ArmMotion& motion) noexcept;
 
   /// Time until the end of the motion given to follow(); negative after the end [s].

@@ -18,8 +18,8 @@ namespace hjt
 std::vector<ArmSetPoint> readSetPoints(const std::string& path, const ArmDescription& arm);
 
 /// Computes missing speeds and accelerations from differences of the angles. If the speeds are missing, a joint rests
-/// at the first and the last set point, unless it would need more than 10 rad/s^2 to start or stop within one row. This
-/// is the case if the set points are a piece of a longer motion.
+/// at the first and the last set point, unless it would need more than 10 rad/s^2 to start or stop within one row, as
+/// in a piece of a longer motion.
 void fillRates(std::vector<ArmSetPoint>& points, bool has_velocity, bool has_acceleration);
 
 /// Corrects the times of set points whose stamps jitter, for example because a program stamped the rows when it

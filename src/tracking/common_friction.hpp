@@ -19,7 +19,7 @@ constexpr double NO_WITNESS = 0.05;
 
 constexpr std::size_t MIN_WITNESSES = 3;  ///< least number of joints that can confirm a common factor
 
-/// Number of joints from base to elbow, of all `joints` of an arm. The other joints are the wrists.
+/// Number of joints from base to elbow in an arm of `joints` joints. The other joints are the wrists.
 inline std::size_t jointsToElbow(std::size_t joints)
 {
   return (joints + 1) / 2;

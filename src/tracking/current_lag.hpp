@@ -43,7 +43,7 @@ public:
 private:
   static constexpr int OTHERS = 4;
   static constexpr double MIN_SECONDS = 5.0;
-  // Sums of the products of these columns with each other: 1, sign, speed, acceleration, load, current.
+  // Sums over time of the products of the columns 1, sign, speed, acceleration, load and current with each other.
   Eigen::Matrix<double, OTHERS + 2, OTHERS + 2> sums_ = Eigen::Matrix<double, OTHERS + 2, OTHERS + 2>::Zero();
 };
 

@@ -27,7 +27,8 @@ public:
     ++end_;
   }
 
-  /// The last value from `time` [s] or earlier that is at most `max_age` [s] old at `time`; none: no such value.
+  /// The last value from `time` [s] or earlier that is at most `max_age` [s] old at `time`; none: there is no such
+  /// value.
   std::optional<double> at(double time, double max_age = std::numeric_limits<double>::infinity()) const noexcept
   {
     for (std::uint64_t i = end_; i > begin_ && end_ - i < ROOM; --i)

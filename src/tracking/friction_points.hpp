@@ -92,7 +92,7 @@ public:
 
 private:
   static constexpr std::uint64_t MIN_BLOCKS = 3;
-  // DontAlign, so that a class with such a member needs no aligned operator new.
+  // The matrices are not aligned, so that a class with such a member needs no aligned operator new.
   using Vector6 = Eigen::Matrix<double, 6, 1, Eigen::DontAlign>;
   using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 

@@ -70,7 +70,8 @@ double impossibleWay(const std::vector<FrictionPoint>& points)
 
 using Gap = std::pair<Reason, std::string>;  // a reason for a missing verdict, and this reason as a sentence
 
-/// Says why the points give no friction factor; SOUND: they do. `is_to_own`: whether the reference is the joint's own.
+/// Says why the points give no friction factor; SOUND: they give one. `is_to_own`: whether the reference is that of
+/// this joint when it was sound.
 Gap whyNone(const std::vector<FrictionPoint>& points, const JointEvidence& evidence, bool is_to_own)
 {
   const std::string have_rows = " have at least " + std::to_string(FrictionPoints::MIN_ROWS) + " rows" +

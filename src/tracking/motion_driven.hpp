@@ -119,9 +119,9 @@ private:
 
 /// Share of the friction that has built up, between -1 and 1. After a reversal the share builds up over an angle of the
 /// motor (function `mobilised`). The share has two parts. The part of the contacts builds up over
-/// telemetry.presliding_angle. It decays with the time constant RELAXATION, as the current of standing joints does (UR5
-/// CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole, builds up over
-/// LASTING_ANGLE and does not decay. Noise of an encoder at standstill hardly changes the lasting part.
+/// telemetry.presliding_angle. This part decays with the time constant RELAXATION, as the current of standing joints
+/// does (UR5 CB series, K. Kufieta, NTNU 2014: 5 to 10 s). The lasting part, telemetry.lasting_share of the whole,
+/// builds up over LASTING_ANGLE and does not decay. Noise of an encoder at standstill hardly changes the lasting part.
 class Presliding
 {
 public:

@@ -218,8 +218,8 @@ public:
   /// Takes a row of telemetry and ignores MotionRow::load. Call pop() afterwards.
   void push(const MotionRow& row) noexcept;
 
-  /// The next comparison that is ready; none: there is none. A comparison is ready when the rows after its row are
-  /// known (MotionDifferentiator). Call this function until it returns none.
+  /// The next comparison that is ready; none: no comparison is ready. A comparison is ready when the rows after its row
+  /// are known (MotionDifferentiator). Call this function until it returns none.
   std::optional<Comparison> pop(bool at_end = false) noexcept;
 
   /// Replaces push() and pop() for a row with known speed and acceleration, for example from ArmLoad. The row must be

@@ -18,8 +18,8 @@
 
 namespace hjt
 {
-/// Relative increase and decrease of a joint's friction from its own earlier friction that a verdict ignores, however
-/// certain it is [-]. The bound for a decrease is wider, because no fault takes away a fifth of the friction.
+/// Relative increase and decrease of a joint's friction from its own earlier friction that a verdict ignores, even if
+/// the change is certain [-]. The bound for a decrease is wider, because no fault takes away a fifth of the friction.
 constexpr double MORE_THAN_OWN = 0.05;
 constexpr double LESS_THAN_OWN = 0.10;
 
@@ -296,7 +296,8 @@ struct GainEvidence
   /// Whether the friction's factor is nearer to the load's factor than to 1. If not, a wrong load is as likely.
   bool isOfFriction() const { return std::abs(std::log(load.value / friction)) < std::abs(std::log(friction)); }
 
-  /// Misfit by a wrong gain; empty: both factors differ, that of the load is near 1, or the load is too small.
+  /// Misfit by a wrong gain. Empty: the factors of load and friction differ, the factor of the load is near 1, or the
+  /// load is too small to show a factor.
   Misfit misfit() const
   {
     constexpr double NOTEWORTHY = 0.2;  // least deviation of a gain that counts; gains of one type deviate by less [-]

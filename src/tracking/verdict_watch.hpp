@@ -131,7 +131,7 @@ private:
   double confirmed_at_{};  // time of the last row when confirmed_ was last set [s]
 };
 
-/// commonFriction() for the joints of these verdicts.
+/// Common friction factors of these joints, by their present evidence. `tolerance`: as in hjt::commonFriction().
 inline ArmFriction commonFriction(const std::vector<VerdictWatch*>& joints, double tolerance)
 {
   std::vector<MeasuredFriction> frictions;
