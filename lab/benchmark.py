@@ -41,7 +41,8 @@ HEAD = """# Run time against error
 `lab/run benchmark` writes this page. The page compares how much time the solvers of the twin and of other programs
 (peers) need to reach a given error. All solvers integrate the same equations of motion. The problems are the dynamic
 ring of [model.md](model.md) (804 states: masses of teeth, wave generator, circular spline), the operating model (motor
-and output as masses, the ring in equilibrium), and the selectable levels of detail.
+and output as masses, the ring in equilibrium), and the shipped gear
+with all friction, which only the twin's own methods solve (levels of detail).
 
 ```sh
 lab/run benchmark                    # ten minutes: installs peers, measures, writes every run to out/benchmark/runs.csv

@@ -155,7 +155,8 @@ struct FutureLoad
 {
   double step{};             ///< length of an interval [h]
   std::vector<Usage> usage;  ///< entry i: use in the next i times `step` hours; at least two entries
-  /// Equivalent wear depths (LoadFeedback) of flanks and interface at the end of life [m]; 0: limits of the parameters.
+  /// Wear limits of flanks and interface [m], as depths that the same use would cause with the loads of the new drive
+  /// (LoadFeedback); 0: the limits of the parameters.
   double flank_limit{};
   double interface_limit{};
 };

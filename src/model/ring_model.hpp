@@ -192,7 +192,7 @@ struct RingResponse
   double motor_stiffness{};        ///< stiffness of the wave generator with the output held [N.m/rad]
 };
 
-/// Friction of the ring in equilibrium, with respect to the speeds of motor and output.
+/// Quantities of the ring in equilibrium that give its friction at any speeds of motor and output.
 struct RingFrictionResponse
 {
   /// number of groups of loaded flanks with similar sliding. The friction power of a group, sum_i |F_i| |slip_i .

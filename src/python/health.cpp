@@ -213,7 +213,7 @@ void bindAssessment(py::module& module)
       .def_property_readonly("alternatives", &alternativesOf,
                              "likely causes after `cause`, until all add up to 90 %: {cause: probability [-]}")
       .def_readonly("largest_score", &Assessment::largest_score,
-                    "largest score of the last windows' mean / threshold; a ratio beyond 1 is an alarm [-]")
+                    "score of the last windows' mean / its threshold, largest of all indicators; beyond 1: an alarm [-]")
       .def_property_readonly("evidence", &evidenceOf,
                              "indicators whose scores exceed the threshold, largest score first: list of Evidence");
   addText(assessment);

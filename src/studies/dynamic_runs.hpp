@@ -101,8 +101,8 @@ struct QuasiStaticRow
   double torsion_quasi_static{};           ///< this torsion in equilibrium under the load at the same motor angle [rad]
   double wave_generator_torque_dynamic{};  ///< torque on the wave generator, dynamic ring [N.m]
   double wave_generator_torque_quasi_static{};  ///< torque on the wave generator, ring in equilibrium [N.m]
-  double contact_error_rms{};  ///< rms difference of the wave generator's forces on the teeth between the rings [N]
-  double mesh_error_rms{};     ///< rms difference of the mesh forces on the teeth between the rings [N]
+  double contact_error_rms{};  ///< wave generator's force on a tooth: rms of dynamic - equilibrium over the teeth [N]
+  double mesh_error_rms{};     ///< mesh force on a tooth: rms of dynamic - equilibrium over the loaded teeth [N]
 };
 
 enum class QuasiStaticOutcome

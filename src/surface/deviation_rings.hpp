@@ -138,7 +138,7 @@ public:
   /// Pitch whose mirror image is `pitch`.
   std::size_t imageOf(std::size_t pitch) const noexcept { return (centre_ + 2 * pitches_ - 1 - pitch) % pitches_; }
 
-  /// Mirror image of a line: the line at the opposite v.
+  /// Mirror image of a line of nodes: the line at -v, where v is output angle - motor angle / ratio.
   DeviationLine image(const DeviationLine& line) const
   {
     DeviationLine image = line;

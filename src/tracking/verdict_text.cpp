@@ -344,7 +344,7 @@ std::vector<std::string> cannotShow(const JointEvidence& evidence, const Verdict
       "friction of the grease by some per cent.");
   add(!evidence.baselineGiven(),
       "A fault that existed from the first window, because no reference of this joint was given. An effect larger "
-      "than the differences between sound joints of one kind shows nevertheless.");
+      "than the differences between sound joints of one kind is still found.");
   add(reach.touched_rows > 0,
       "What the joint did during a contact and shortly after it: " + whole(verdict[Figure::TOUCHED_ROWS]) + " of " +
           whole(verdict[Figure::ROWS]) + " rows do not count. In the strongest contact " +

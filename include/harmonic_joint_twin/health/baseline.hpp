@@ -278,7 +278,7 @@ public:
     return sums_;
   }                                                           ///< sums of each class; empty after setReference
   int windowsHere() const noexcept { return windows_here_; }  ///< windows learned in the class, or compared since reset
-  /// Number of windows that the reference of a class needs.
+  /// Number of windows that the reference of an operating point needs.
   int windowsNeeded() const noexcept { return given_ ? MIN_WINDOWS : windows_; }
   bool given() const noexcept { return given_; }  ///< whether setReference set the reference, which has no sums then
   double loadStep() const noexcept { return load_step_; }  ///< width of a class of load [N.m]
