@@ -212,8 +212,9 @@ void bindAssessment(py::module& module)
       .def_readonly("severity_deviation", &Assessment::severity_deviation, "standard deviation of the severity [-]")
       .def_property_readonly("alternatives", &alternativesOf,
                              "likely causes after `cause`, until all add up to 90 %: {cause: probability [-]}")
-      .def_readonly("largest_score", &Assessment::largest_score,
-                    "score of the last windows' mean / its threshold, largest of all indicators; beyond 1: an alarm [-]")
+      .def_readonly(
+          "largest_score", &Assessment::largest_score,
+          "score of the last windows' mean / its threshold, largest of all indicators; beyond 1: an alarm [-]")
       .def_property_readonly("evidence", &evidenceOf,
                              "indicators whose scores exceed the threshold, largest score first: list of Evidence");
   addText(assessment);
