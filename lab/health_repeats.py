@@ -181,7 +181,8 @@ def share(numbers):
 def repeats_table(trials):
     rows = [("friction and payload as in the reference", [found["sound"] for found in trials]),
             (f"friction of another day: {100 * SHARE:g} % and {FLOOR} N·m", [found["friction"] for found in trials]),
-            *((f"payload {beside:g} N·m heavier at the joint than in the reference; `output.gravity_torque` has this weight",
+            *((f"payload {beside:g} N·m heavier at the joint than in the reference; "
+               "`output.gravity_torque` has this weight",
                [found["payloads"][beside] for found in trials])
               for beside in BESIDE)]
     return ["| check-ups of sound drives | judged | alarms |", "|---|---|---|",

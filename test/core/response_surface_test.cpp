@@ -122,7 +122,7 @@ TEST(ResponseSurface, NeedsOneTorqueLimit)
 {
   EXPECT_EQ(buildWith({ "motor.torque_limit=0.0", "output.load_torque_limit=20.0" }).failure_reason, "");
   EXPECT_THAT(buildWith({ "motor.torque_limit=0.0", "output.load_torque_limit=0.0" }).failure_reason,
-              testing::HasSubstr("are both 0"));
+              testing::HasSubstr("motor.torque_limit and output.load_torque_limit are 0"));
 }
 
 TEST(ResponseSurface, MotorStiffnessIsTheTorquesDerivative)

@@ -119,7 +119,7 @@ TEST(SignatureFile, SaysWhereItIsDamaged)
   EXPECT_THAT(refusal(replaced("1e-2", "")), says(":14: signatures: 6 words, expected 7"));
   EXPECT_THAT(refusal(replaced("1e-2", "nan")), says(":14: signatures: change = nan"));
   EXPECT_THAT(refusal(replaced("signatures: |\n", "signatures:\n")), testing::Not(""));
-  EXPECT_THAT(refusal("- 1\n"), says(": no file of signatures"));
+  EXPECT_THAT(refusal("- 1\n"), says(": the file has no keys, so it is no file of signatures"));
 }
 
 TEST(SignatureFile, IsWrittenAsItWasRead)
