@@ -62,23 +62,22 @@ RecordingFinding velocityFinding(const FittedFactor& own, double of_stamps)
   constexpr double STANDS = 0.01;
   if (std::isinf(own.value))
   {
-    return { "velocity_zero", "the recorded velocity is zero; the angles give the velocity", std::nullopt };
+    return { "velocity_zero", "zero velocity; the angles give it", std::nullopt };
   }
   if (own.value < -STANDS)
   {
-    return { "velocity_sign", "angle and velocity have opposite signs", Reason::VELOCITY_SIGN };
+    return { "velocity_sign", "angle and velocity differ in sign", Reason::VELOCITY_SIGN };
   }
   if (std::abs(own.value / DEGREE - 1.0) < FACTOR_OFF)
   {
-    return { "velocity_unit", "the recorded velocity is in deg/s; the angles give the velocity", std::nullopt };
+    return { "velocity_unit", "velocity in deg/s; the angles give it", std::nullopt };
   }
   if (own.value < STANDS)
   {
     return { "velocity_scale", "the angle stands still while the velocity says that the joint moves",
              Reason::VELOCITY_SCALE };
   }
-  return { "velocity_scale",
-           "the angle changes " + rounded(own.value / of_stamps) + " times as fast as the recorded velocity says",
+  return { "velocity_scale", "the angle changes " + rounded(own.value / of_stamps) + " times the velocity",
            Reason::VELOCITY_SCALE };
 }
 }  // namespace
@@ -433,10 +432,9 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   }
   if (const double late = ownLag(joint.lag.left()); late != 0.0)
   {
-    findings.push_back(
-        { "current_lag",
-          "the current comes " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
-          Reason::STAMPS });
+    findings.push_back({ "current_lag",
+                         "current " + lagText(late, CurrentLag::LONGEST - CurrentLag::SPACING) + " than its motion",
+                         Reason::STAMPS });
   }
   if (const std::string text = joint.ratio.text(); !text.empty())
   {
@@ -453,14 +451,14 @@ std::vector<RecordingFinding> RecordingFit::ofJoint(std::size_t number) const
   else if (std::isfinite(own.value) && std::isfinite(lag.value) &&
            std::abs(lag.value) > LAG_OFF + DEVIATIONS * lag.uncertainty)
   {
-    findings.push_back({ "lag",
-                         "the velocity comes " + rounded(std::abs(lag.value)) + " s " +
-                             (lag.value > 0.0 ? "after" : "before") + " the angle",
-                         Reason::VELOCITY_LAG });
+    findings.push_back(
+        { "lag",
+          "velocity " + rounded(std::abs(lag.value)) + " s " + (lag.value > 0.0 ? "after" : "before") + " the angle",
+          Reason::VELOCITY_LAG });
   }
   if (!joint.time.hasVelocity())
   {
-    findings.push_back({ "no_velocity", "no velocity is recorded; the angles give the velocity", std::nullopt });
+    findings.push_back({ "no_velocity", "no velocity; the angles give it", std::nullopt });
   }
   if (joint.reach.most_angle - joint.reach.least_angle < LEAST_MOTION)
   {

@@ -218,7 +218,7 @@ class Arm(ArmTest):
         self.fail_with(1, ["other lacks arm.json, a file of a report"], *compare)
         with open(self.path("other/arm.json"), "w", encoding="ascii") as file:
             json.dump({"arm": "ur5e"}, file)
-        self.fail_with(1, ["other", "of a ur5e, not of a ur5"], *compare)
+        self.fail_with(1, ["other", "is a report on the arm ur5e, not on ur5"], *compare)
         self.fail_with(1, ["same directory"], *compare[:-1], "report")
 
     @unittest.skipUnless(RECORDINGS, f"no recordings of a UR5 in {DIRECTORY}; name it in HJT_TELEMETRY_DIR")

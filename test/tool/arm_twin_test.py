@@ -168,7 +168,7 @@ class ArmTwin(tool.ToolTest):
             self.fail_with(1, [f"moves{value}", "must be a list of one move or more"], "arm", "none.yaml", "--arm",
                            "ur5", "--out", "no.csv")
         self.write("a.bag", "#ROSBAG V2.0\n")
-        self.fail_with(1, ["a.bag contains messages, which have no targets; set points"], "arm", "a.bag",
+        self.fail_with(1, ["a.bag contains messages, which have no targets; give a table of set points"], "arm", "a.bag",
                        "--arm", "ur5", "--out", "no.csv")
         self.fail_with(1, ["a.bag contains messages, which have no targets; the controller's gains"], "identify",
                        "a.bag", "--arm", "ur5", "--controller")

@@ -158,8 +158,8 @@ class Check(tool.ToolTest):
                          [False] * 3 + [True] * 2 + [False])
         self.assertIn("Not judged: base. The effort is zero.", arm["text"])
         done = self.succeed("follow", "arm.csv", "--arm", "ur5")
-        for part in ("base: the effort is zero", "shoulder: angle and velocity have opposite signs",
-                     "elbow: the velocity comes 0.1"):
+        for part in ("base: the effort is zero", "shoulder: angle and velocity differ in sign",
+                     "elbow: velocity 0.1"):
             self.assertIn(part, done.stderr)
 
     def test_a_bag_without_effort_or_without_a_known_arm(self):

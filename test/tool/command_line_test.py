@@ -155,7 +155,7 @@ class Options(tool.ToolTest):
                                 f"\n  --load TEXT:{{arm,target_moment}}=arm Needs: --arm{column}load of",
                                 "\nExactly one of these options is required:\n  --joint TEXT                base"]),
                 (["life"], ["Usage: joint_twin life [OPTIONS] SUBCOMMAND\n",
-                            "\nStudies of the model:\n  age                         the nominal drive"])]:
+                            "\nStudies of the model:\n  age                         life of the nominal drive"])]:
             text = self.succeed(*arguments, "--help").stdout
             for part in parts:
                 self.assertIn(part, text)

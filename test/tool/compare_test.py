@@ -65,7 +65,7 @@ class Compare(tool.ToolTest):
                                  "/joint_twin/load": True, "sensor_msgs/Temperature of elbow_joint": False,
                                  "/joint_twin/joint_states": False})
         self.assertEqual(report["contents"]["joints"], ["wrist_1_joint", "elbow_joint"])
-        self.assertIn("motor's is needed", " ".join(report["verdict"]["cannot_show"]))
+        self.assertIn("need the angle of the motor too", " ".join(report["verdict"]["cannot_show"]))
 
     def test_nothing_is_overwritten_unasked_and_bad_input_is_named(self):
         robot.write_bag(self.path("a.bag"), 3.0)

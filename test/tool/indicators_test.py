@@ -355,7 +355,7 @@ class Life(tool.ToolTest):
 
     def test_bad_duty_cycles_are_named(self):
         self.fail_with(1, ["duration", ":2"], "life", "age", self.duty("0,1,2,3\n"))
-        self.fail_with(1, ["never turns"], "life", "age", self.duty("10,0,67,40\n"))
+        self.fail_with(1, ["turns in none of the phases"], "life", "age", self.duty("10,0,67,40\n"))
         self.fail_with(1, ["temperature"], "life", "age",
                        self.write("duty.csv", "duration,motor_speed,load_torque\n1,2,3\n"))
 

@@ -57,8 +57,7 @@ std::string textOfArm(const RecordingOptions& options, const CheckedContents& co
   {
     return "not known; the recording has the joints " + joined(contents.named);
   }
-  std::string text = arm.taken + names + ", chosen from " + std::to_string(arm.fitting.size()) +
-                     " arms that fit (--arm names another)";
+  std::string text = arm.taken + names + " of " + std::to_string(arm.fitting.size()) + " arms that fit";
   const auto left = [](const ArmFit& fit) { return percentText(fit.left); };
   const auto taken =
       std::find_if(arm.ranked.begin(), arm.ranked.end(), [&](const ArmFit& fit) { return fit.arm == arm.taken; });
@@ -98,7 +97,7 @@ std::string textOfEffort(const CheckedContents& contents, const CheckedArm& arm)
   }
   return effort.is_known && effort.unit == arm.configured_effort ?
              std::string(effortUnitName(effort.unit)) + "; with the load it changes " + factor +
-                 " times as much as the configured gain predicts" :
+                 " times as much as predicted" :
              "changes with the load " + factor + " times as much as " + effortUnitName(arm.configured_effort) +
                  " would";
 }
@@ -133,8 +132,8 @@ std::string textOfVelocities(const CheckedArm& arm)
   {
     const bool fit = std::none_of(arm.findings.begin(), arm.findings.end(),
                                   [](const RecordingFinding& finding) { return finding.kind == "stamps"; });
-    return (fit ? "fit: " : "do not fit: ") + std::string("according to the stamps the angles change ") +
-           roundedText(arm.stamps.value, 4) + " times as fast as the velocities say";
+    return (fit ? "fit: " : "do not fit: ") + std::string("the angles change ") + roundedText(arm.stamps.value, 4) +
+           " times as fast as the velocities say";
   }
   const bool has =
       std::any_of(arm.joints.begin(), arm.joints.end(), [](const CheckedJoint& joint) { return joint.has_velocity; });
