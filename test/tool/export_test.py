@@ -61,7 +61,7 @@ class Export(tool.ToolTest):
                                  "--config", "joints/elbow.yaml")["rows"]
         off = max(abs(float(dynamics["friction"]) + speed * float(dynamics["damping"]) -
                       RATIO * (row["gear_loss"] + row["motor"])) for speed, row in zip(speeds, rows))
-        stated = float(re.search(r"straight line \(up to (\S+)\s+N\.m\)", self.export("urdf")).group(1))
+        stated = float(re.search(r"straight line over the speed \(up to (\S+)\s+N\.m\)", self.export("urdf")).group(1))
         self.assertAlmostEqual(off, stated, delta=0.05 * stated)
         if shutil.which("check_urdf"):
             with open(self.path("joint.urdf"), "w", encoding="utf-8") as file:

@@ -278,7 +278,7 @@ class Sweep(SweepTest):
                 ("number: 4", "number: 4, tests: 0.5", "drives.tests = 0.5 is unknown; allowed: number, test, set"),
                 ("bearing.viscosity", "bearing.viscosit", "unknown parameter bearing.viscosit"),
                 ("[1.0e-4, 2.0e-4]", "[1.0e+4, 2.0e+4]", "bearing.viscosity = "),
-                ("bearing.viscosity", "input.temperature", "drives.set.input.temperature is also in set"),
+                ("bearing.viscosity", "input.temperature", "drives.set.input.temperature is also in the mapping 'set'"),
                 ("log_uniform", "grid", "drives.set.bearing.viscosity cannot be a grid over drives"),
                 ("{log_uniform: [1.0e-4, 2.0e-4]}", "1.0e-4", "drives.set must draw at least one parameter")]:
             with self.subTest(new):

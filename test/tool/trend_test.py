@@ -150,7 +150,7 @@ class Trend(tool.ToolTest):
         self.assertEqual(few["level"], "WARN", "that of the latest recording")
         day = self.elbow(self.trend(self.months([1.6, 1.4, 1.2, 1.0], "day", step=3600.0)))
         self.assertEqual((day["level"], day["change"]), ("NOT JUDGED", None))
-        self.assertIn("of 3.0 h, less than a day", day["text"])
+        self.assertIn("are within 3.0 h. Within a day", day["text"])
 
     def test_what_cannot_be_read_at_all_is_an_error(self):
         os.mkdir(self.path("empty"))
