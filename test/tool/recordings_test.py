@@ -202,7 +202,7 @@ class Recordings(RecordingTest):
             done = self.run_tool(*command.split()[1:], "--force")
             self.assertIn(done.returncode, (0, 1), (command, done.stderr))
             self.assertNotIn("never contains", done.stderr)
-        self.fail_with(1, ["given --prefix robot_", "given --suffix _b"], "follow", "two.bag", "--arm", "ur5")
+        self.fail_with(1, ["with --prefix robot_ the", "with --suffix _b the"], "follow", "two.bag", "--arm", "ur5")
         self.succeed("follow", "two.bag", "--arm", "ur5", "--prefix", "robot_", "--bag", "followed.bag")
 
     def test_names_without_efforts_or_with_nan_are_told_apart(self):

@@ -114,7 +114,7 @@ class Signatures(tool.ToolTest):
 
     def test_what_is_no_plan_of_signatures(self):
         refused = [("  sound: []\n", "", "no sound run under the same conditions"),
-                   ("onset: 0.0}\n  crack:", "onset: 1.0}\n  crack:", "there from the start on"),
+                   ("onset: 0.0}\n  crack:", "onset: 1.0}\n  crack:", "must exist from the start"),
                    ("{format: bag}", "{format: hdf5, groups: {a: {rate: 100.0, columns: [load_torque]}}}",
                     "record: {format: bag}"),
                    ("  sound: []\n", "  sound: []\n  two:\n    - {kind: buckling, severity: 0.1}\n"
