@@ -208,8 +208,8 @@ def levels_of(reference):
             f"The reference run is {reference['methods'][0]} (h: step). A second run, {reference['methods'][1]}, "
             f"differs from the first by {reference['apart']['force']:.1e} in the forces, "
             f"{reference['apart']['position']:.1e} in the positions and {reference['apart']['angle']:.1e} in the "
-            "angles. Errors smaller than the differences between these two runs mean nothing, so `benchmark_levels.csv` "
-            "omits errors of this size.", "",
+            "angles. Errors smaller than the differences between these two runs mean nothing, so "
+            "`benchmark_levels.csv` omits errors of this size.", "",
             f"![{reference['title']}](images/benchmark/levels.png)", "", wrapped(CHOICE)]
 
 

@@ -178,7 +178,7 @@ class ArmAction(unittest.TestCase):
         self.wrench.publish(push)
         self.ends(handle, GoalStatus.ABORTED, Result.PATH_TOLERANCE_VIOLATED, "protective stop: ")
         self.wrench.publish(WrenchStamped())
-        self.ends(self.send(START, 2.0), GoalStatus.REJECTED, Result.INVALID_GOAL, "~unlock_protective_stop ends the stop")
+        self.ends(self.send(START, 2.0), GoalStatus.REJECTED, Result.INVALID_GOAL, "~unlock_protective_stop ends")
         wait_until(lambda: self.states_of_driver() == (7, 3, False, 0.0), "the driver's states in the stop")
         unlock = rospy.ServiceProxy("/arm_twin/unlock_protective_stop", Trigger)
         wait_until(lambda: unlock().success, "the end of the stop")

@@ -168,9 +168,9 @@ class ArmTwin(tool.ToolTest):
             self.fail_with(1, [f"moves{value}", "must be a list of one move or more"], "arm", "none.yaml", "--arm",
                            "ur5", "--out", "no.csv")
         self.write("a.bag", "#ROSBAG V2.0\n")
-        self.fail_with(1, ["a.bag contains messages, which have no targets; give a table of set points"], "arm", "a.bag",
+        self.fail_with(1, ["have no targets; give a table of set points"], "arm", "a.bag",
                        "--arm", "ur5", "--out", "no.csv")
-        self.fail_with(1, ["a.bag contains messages, which have no targets; the controller's gains"], "identify",
+        self.fail_with(1, ["have no targets; give a table with target and actual values"], "identify",
                        "a.bag", "--arm", "ur5", "--controller")
         self.write("few.csv", "timestamp,target_q_0\n0,0\n")
         self.fail_with(1, ["no column target_q_1 or shoulder_position, target_q_2 or elbow_position"], "arm", "few.csv",

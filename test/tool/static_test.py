@@ -459,7 +459,8 @@ class Gear(tool.ToolTest):
         self.check(report["figures"][0]["catalogue"], twist, 1e-9, report["figures"][0]["name"])
 
     def test_bad_requests_are_named(self):
-        for options, reason in ((("--stiffness", "9e3,15e3"), "three values > 0: K1, K2 and K3"), (("--breakpoints", "14,4"), "T1 < T2"),
+        for options, reason in ((("--stiffness", "9e3,15e3"), "three values > 0: K1, K2 and K3"),
+                                (("--breakpoints", "14,4"), "T1 < T2"),
                                 (("--starting-torque", "1e-4"), "the other friction of the gear alone is"),
                                 (("--ratings", "21,30,60,0"), "ratings needs four values > 0")):
             self.fail_with(1, [reason], "gear", *options, "--out", "gear.yaml")
