@@ -308,7 +308,7 @@ std::string verdictText(const Verdict& verdict)
   }
   if (!departing.empty())
   {
-    return "These differ from a sound joint: " + joined(departing, "; ") + ".";
+    return "Not as in a sound joint: " + joined(departing, "; ") + ".";
   }
   return sound.empty() ? "The motion does not show whether the joint is sound. " + verdict.friction_text :
                          "These are as in a sound joint: " + joined(sound) + "." +

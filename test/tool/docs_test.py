@@ -139,7 +139,7 @@ class Pages(tool.ToolTest):
         self.assertRegex(said["joint_twin check sound.bag"], r"125 Hz, 0 missing, 0 gaps, .* 0 unreadable")
         self.assertRegex(said["joint_twin compare sound.bag"], r"(?m)^OK$")
         self.assertRegex(said["joint_twin compare later.bag"], r"(?m)^WARN$")
-        found = re.findall(r"(?m)^(\w+): These differ from a sound joint: friction",
+        found = re.findall(r"(?m)^(\w+): Not as in a sound joint: friction",
                            said["joint_twin compare later.bag"])
         self.assertEqual(found, ["elbow"])
         self.assertNotIn("hardly moves", said["joint_twin identify sound.bag"])
