@@ -363,6 +363,14 @@ TEST(SurfaceBalls, TorquesAndStiffnessAreTheEnergysDerivatives)
       const double stiffness = (before.wave_generator_torque - after.wave_generator_torque) / (2.0 * STEP);
       EXPECT_NEAR(here.motor_stiffness, stiffness, 1e-3 * std::abs(stiffness) + 1e-4);
     }
+    // Within a cell; at its edges the tables' curvature jumps.
+    for (const double motor : { 0.31, 1.71, 4.07 })
+    {
+      const double output = motor / 101.0 + 1.234e-3;
+      const auto torque = [&](double angle) { return gear.at(angle, output).wave_generator_torque; };
+      const double stiffness = gear.at(motor, output).motor_stiffness;
+      EXPECT_NEAR(stiffness, (torque(motor - STEP) - torque(motor + STEP)) / (2.0 * STEP), 1e-4 * std::abs(stiffness));
+    }
   }
 }
 
