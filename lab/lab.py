@@ -39,10 +39,11 @@ APART = {
 
 
 def wrapped(text):
-    """Paragraphs in lines of WIDTH; headings, tables, figures, lists and code as they are."""
+    """Paragraphs in lines of WIDTH; headings, tables, figures, lists and code as they are. A table ends at the first
+    line that does not begin with a bar."""
     return "\n\n".join(part if part.lstrip().startswith(("#", "|", "!", "- ", "```")) else
                        textwrap.fill(" ".join(part.split()), WIDTH, break_long_words=False, break_on_hyphens=False)
-                       for part in text.strip("\n").split("\n\n")) + "\n"
+                       for part in re.split(r"\n\n+|(?<=\|)\n(?!\|)", text.strip("\n"))) + "\n"
 
 
 def apart(folder, name, lines):

@@ -3,15 +3,16 @@
 """Holds the twin against recordings of real robots and writes docs/real_robot.md. Started by `lab/run compare_real`."""
 import argparse
 import os
-import re
 import sys
 import tempfile
-import textwrap
 
 import two_encoders
 import ur10e
 import ur5
 from runs import Runner
+
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from lab import wrapped  # noqa: E402  (its folder is known now)
 
 HEAD = """# Beside a real robot
 
@@ -28,15 +29,6 @@ page. The friction of your arm may vary more between recordings than that of the
 For each robot the program identifies the twins on one recording and compares the twins with the other recordings.
 [real_robot_runs.txt](real_robot_runs.txt) has the commands behind the figures.
 """
-WIDTH = 150  # of a line of the page
-
-
-def wrapped(text):
-    """Paragraphs in lines of WIDTH; tables, headings and figures as they are."""
-    parts = [part if part.startswith(("|", "#", "!")) else
-             textwrap.fill(" ".join(part.split()), WIDTH, break_long_words=False, break_on_hyphens=False)
-             for part in re.split(r"\n\n+|(?<=\|)\n(?!\|)", text.strip())]
-    return "\n\n".join(parts) + "\n"
 
 
 def main():
